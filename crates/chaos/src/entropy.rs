@@ -1,6 +1,7 @@
 //! Entropies of a signal.
 
 use crate::error::{Error, checked};
+use scalar::Scalar;
 
 /// Sample entropy (Richman and Moorman 2000) in nats. It is minus the logarithm of the probability that
 /// `length` samples that agree within `tolerance` also agree in the next one. `None` where no
@@ -127,16 +128,21 @@ fn matches_ratio(signal: &[f64], length: usize, tolerance: f64) -> Option<f64> {
         end += order[end..].iter().take_while(|b| within(b)).count();
         let agree = &mut agree[..end.saturating_sub(place + 1)];
         agree.fill(1);
-        for (k, ranks) in (1..).zip(&followers) {
-            if k == length {
-                short += sum(agree);
-            }
-            let stretch = stretches[index + k];
-            for (agrees, rank) in agree.iter_mut().zip(&ranks[place + 1..]) {
-                *agrees &= u32::from(stretch.holds(*rank));
-            }
-        }
-        long += sum(agree);
+        f64::vectorised(
+            #[inline(always)]
+            || {
+                for (k, ranks) in (1..).zip(&followers) {
+                    if k == length {
+                        short += sum(agree);
+                    }
+                    let stretch = stretches[index + k];
+                    for (agrees, rank) in agree.iter_mut().zip(&ranks[place + 1..]) {
+                        *agrees &= u32::from(stretch.holds(*rank));
+                    }
+                }
+                long += sum(agree);
+            },
+        );
     }
     (long > 0).then(|| (short as f64 / long as f64).ln())
 }
@@ -150,11 +156,13 @@ struct Stretch {
 }
 
 impl Stretch {
+    #[inline(always)]
     fn holds(self, rank: u32) -> bool {
         rank.wrapping_sub(self.low) <= self.width
     }
 }
 
+#[inline(always)]
 fn sum(agree: &[u32]) -> u64 {
     u64::from(agree.iter().sum::<u32>())
 }

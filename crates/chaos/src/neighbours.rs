@@ -4,6 +4,7 @@
 //! else asks for a dimension at run time, so this file chooses among the types.
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use scalar::Scalar;
 use std::num::NonZero;
 
 /// Largest dimension that can be searched.
@@ -45,14 +46,19 @@ impl Delays<'_> {
 
     /// The same of vector `a` and each vector from `first` on, one per element of `into`.
     pub(crate) fn squared_distances(&self, a: usize, first: usize, into: &mut [f64]) {
-        into.fill(0.0);
-        for axis in 0..self.dimension {
-            let here = self.at(a, axis);
-            let there = &self.signal[first + axis * self.delay..];
-            for (sum, there) in into.iter_mut().zip(there) {
-                *sum += (here - there) * (here - there);
-            }
-        }
+        f64::vectorised(
+            #[inline(always)]
+            || {
+                into.fill(0.0);
+                for axis in 0..self.dimension {
+                    let here = self.at(a, axis);
+                    let there = &self.signal[first + axis * self.delay..];
+                    for (sum, there) in into.iter_mut().zip(there) {
+                        *sum += (here - there) * (here - there);
+                    }
+                }
+            },
+        );
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, checked};
 use crate::neighbours::Delays;
+use scalar::Scalar;
 
 /// Measures of the recurrence plot. Lengths are in vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,31 +97,53 @@ impl<'a> Plot<'a> {
 
     /// Which pairs of this lag are close, a bit each.
     fn along(&mut self, lag: usize) -> &[u64] {
-        let signal = self.delays.signal;
-        for (square, (a, b)) in self
-            .squares
-            .iter_mut()
-            .zip(signal.iter().zip(&signal[lag..]))
-        {
-            *square = (a - b) * (a - b);
-        }
-        let sums = &mut self.sums[..self.count - lag];
-        sums.fill(0.0);
-        for axis in 0..self.delays.dimension {
-            let squares = &self.squares[axis * self.delays.delay..];
-            for (sum, square) in sums.iter_mut().zip(squares) {
-                *sum += square;
-            }
-        }
-        let limit = self.limit;
-        let bit = |word: u64, (place, sum): (usize, &f64)| word | u64::from(*sum < limit) << place;
-        let words = sums
-            .chunks(WORD)
-            .map(|sums| sums.iter().enumerate().fold(0, bit));
-        self.close.clear();
-        self.close.extend(words);
-        &self.close
+        let Self {
+            delays,
+            count,
+            limit,
+            squares,
+            sums,
+            close,
+        } = self;
+        let (signal, delay) = (delays.signal, delays.delay);
+        let sums = &mut sums[..*count - lag];
+        close.resize(sums.len().div_ceil(WORD), 0);
+        f64::vectorised(
+            #[inline(always)]
+            || {
+                for (square, (a, b)) in squares.iter_mut().zip(signal.iter().zip(&signal[lag..])) {
+                    *square = (a - b) * (a - b);
+                }
+                sums.copy_from_slice(&squares[..sums.len()]);
+                for axis in 1..delays.dimension {
+                    for (sum, square) in sums.iter_mut().zip(&squares[axis * delay..]) {
+                        *sum += square;
+                    }
+                }
+                for (word, sums) in close.iter_mut().zip(sums.chunks(WORD)) {
+                    *word = bits(sums, *limit);
+                }
+            },
+        );
+        close
     }
+}
+
+/// Which of these are less than `limit`, a bit each.
+#[inline(always)]
+fn bits(numbers: &[f64], limit: f64) -> u64 {
+    let mut bytes = [0; WORD];
+    for (byte, number) in bytes.iter_mut().zip(numbers) {
+        *byte = u8::from(*number < limit);
+    }
+    // Eight bytes of 0 or 1 become the eight highest bits of a product, the first one the lowest.
+    let (eights, _) = bytes.as_chunks::<8>();
+    let packed = eights
+        .iter()
+        .map(|eight| u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56);
+    packed
+        .enumerate()
+        .fold(0, |word, (place, byte)| word | byte << (8 * place))
 }
 
 /// Bits in a word.

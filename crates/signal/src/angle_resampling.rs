@@ -157,7 +157,7 @@ impl AngleGrid {
                 expected: self.samples,
             });
         }
-        let fine: Vec<f64> = self.positions.iter().map(|&p| interpolate(x, p)).collect();
+        let fine = interpolate(x, self.positions.iter().copied());
         Ok(Revolutions {
             samples: if self.factor == 1 {
                 fine
@@ -188,8 +188,8 @@ impl AngleGrid {
         // Within rounding of a whole number it is that number.
         let count = (length - 1e-6).ceil().max(2.0);
         let step = length / count;
-        let at = |i: usize| interpolate(x, start + i as f64 * step);
-        Ok(((0..count as usize).map(at).collect(), sample_rate / step))
+        let positions = (0..count as usize).map(|i| start + i as f64 * step);
+        Ok((interpolate(x, positions), sample_rate / step))
     }
 
     /// Time that the crank takes around each point, from half a step before to half a step after,

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::kaiser::{self, HALF_WIDTH};
+use scalar::Scalar;
 
 /// Low-pass and decimation in one: a symmetric FIR filter evaluated only where an output is due.
 ///
@@ -61,10 +62,20 @@ impl Decimator {
     /// `input_length(1)`.
     pub fn apply(&self, input: &[f64]) -> Vec<f64> {
         let windows = input.windows(self.taps.len()).step_by(self.factor);
-        windows.map(|window| self.weigh(window)).collect()
+        let mut outputs = vec![0.0; windows.len()];
+        f64::vectorised(
+            #[inline(always)]
+            || {
+                for (output, window) in outputs.iter_mut().zip(windows) {
+                    *output = self.weigh(window);
+                }
+            },
+        );
+        outputs
     }
 
     /// The sum of as many inputs as there are taps, each by its tap.
+    #[inline(always)]
     fn weigh(&self, window: &[f64]) -> f64 {
         let (inputs, last_inputs) = window.as_chunks::<LANES>();
         let (taps, last_taps) = self.taps.as_chunks::<LANES>();

@@ -1,6 +1,7 @@
 //! Values between the samples, by windowed-sinc interpolation.
 
 use crate::kaiser::{self, HALF_WIDTH};
+use scalar::Scalar;
 use std::sync::LazyLock;
 
 const TAPS: usize = 2 * HALF_WIDTH;
@@ -26,17 +27,32 @@ fn row(index: usize) -> Row {
     row.map(|w| w / sum)
 }
 
-/// The value of `x` at a fractional sample index `position`.
+/// The values of `x` at fractional sample indices.
 ///
 /// Exact within 1e-4 up to 0.8 of the Nyquist frequency. Beyond its ends the record is
 /// continued by reflection through its end point, 2x₀ − x_i, which keeps value and slope;
-/// `position` must stay within one record length of the ends. `x` is not empty.
-pub(crate) fn interpolate(x: &[f64], position: f64) -> f64 {
+/// Positions must stay within one record length of the ends. `x` is not empty.
+pub(crate) fn interpolate(x: &[f64], positions: impl Iterator<Item = f64>) -> Vec<f64> {
+    let weights = &WEIGHTS[..];
+    let mut values: Vec<f64> = positions.collect();
+    f64::vectorised(
+        #[inline(always)]
+        || {
+            values
+                .iter_mut()
+                .for_each(|value| *value = at(x, *value, weights))
+        },
+    );
+    values
+}
+
+#[inline(always)]
+fn at(x: &[f64], position: f64, weights: &[Row]) -> f64 {
     let floor = position.floor();
     let scaled = (position - floor) * ROWS as f64;
     let index = (scaled as usize).min(ROWS - 1);
     let between = scaled - index as f64;
-    let [low, high] = [&WEIGHTS[index], &WEIGHTS[index + 1]];
+    let [low, high] = [&weights[index], &weights[index + 1]];
 
     let first = floor as isize + 1 - HALF_WIDTH as isize;
     let inside = usize::try_from(first).ok();
@@ -78,6 +94,10 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
+    fn interpolate_one(x: &[f64], position: f64) -> f64 {
+        interpolate(x, std::iter::once(position))[0]
+    }
+
     #[test]
     fn sines_of_the_pass_band_are_met_between_samples() {
         for share in [0.01, 0.3, 0.79] {
@@ -85,7 +105,7 @@ mod tests {
             let x: Vec<f64> = (0..200).map(|i| wave(f64::from(i))).collect();
             for i in 0..500 {
                 let position = 80.0 + 0.0791 * f64::from(i);
-                let error = interpolate(&x, position) - wave(position);
+                let error = interpolate_one(&x, position) - wave(position);
                 assert!(error.abs() < 1e-4, "{share}: {error:e}");
             }
         }
@@ -96,12 +116,12 @@ mod tests {
         let x: Vec<f64> = (0..60).map(|i| (f64::from(i * i) * 0.7).sin()).collect();
         let line: Vec<f64> = (0..60).map(|i| 3.0 - 0.5 * f64::from(i)).collect();
         for i in 0..60 {
-            assert!((interpolate(&x, f64::from(i)) - x[i as usize]).abs() < 1e-13);
+            assert!((interpolate_one(&x, f64::from(i)) - x[i as usize]).abs() < 1e-13);
         }
         for i in 0..130 {
             let position = 0.5 * f64::from(i) - 2.25;
-            assert!((interpolate(&[1e5; 60], position) - 1e5).abs() < 1e-9);
-            assert!((interpolate(&line, position) - (3.0 - 0.5 * position)).abs() < 1e-4);
+            assert!((interpolate_one(&[1e5; 60], position) - 1e5).abs() < 1e-9);
+            assert!((interpolate_one(&line, position) - (3.0 - 0.5 * position)).abs() < 1e-4);
         }
     }
 }

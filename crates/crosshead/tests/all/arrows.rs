@@ -11,7 +11,7 @@ const MAY_IMPORT: [(&str, &str); 24] = [
     ("fourier", ""),
     ("text", ""),
     ("figure", "text"),
-    ("signal", "fourier"),
+    ("signal", "fourier scalar"),
     ("classify", ""),
     ("integrate", "scalar"),
     ("chaos", "fourier scalar"),
