@@ -2,15 +2,16 @@
 
 use crate::Failure;
 use crate::choice::kind_of;
-use crate::output::refuse_existing;
+use crate::output::{refuse_existing, warn};
 use ::calibrate::check::{BUNDLE, CALIBRATION};
 use ::sweep::calibration::{SWEEP_FILE, machine_of};
 use ::sweep::sweep_file;
 use clap::Args;
 use input::bundle::Bundle;
 use input::file_kind::{FileKind, MACHINE_FILE};
-use input::template::{self, Asked};
+use input::template::{self, Asked, Recorded};
 use input::{MachineFile, machine_file};
+use recordings::measured::{Heading, headings};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -22,7 +23,15 @@ const TEMPLATES: [(FileKind, Template); 4] = [
     (MACHINE_FILE, machine),
     (SWEEP_FILE, sweep),
     (BUNDLE, |_, folder| {
-        Ok(template::bundle(&template::recordings_in(folder))?)
+        let (mut recorded, mut unread) = (Vec::new(), Vec::new());
+        for heading in headings(folder) {
+            match heading {
+                Ok(heading) => recorded.push(run_of(heading)),
+                Err(error) => unread.push(format!("left out: {error}")),
+            }
+        }
+        warn(&unread);
+        Ok(template::bundle(&recorded)?)
     }),
     (CALIBRATION, |arguments, _| {
         Ok(template::calibration(&arguments.bundle)?)
@@ -71,6 +80,17 @@ pub struct Arguments {
     /// Replace a file that is there
     #[arg(long)]
     overwrite: bool,
+}
+
+fn run_of(heading: Heading) -> Recorded {
+    let columns = heading.channels.into_iter();
+    Recorded {
+        file: heading.file,
+        columns: columns
+            .map(|channel| (channel.column, channel.unit))
+            .collect(),
+        sample_rate_hz: heading.sample_rate_hz,
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {

@@ -137,6 +137,45 @@ pub fn meaning(channel: &Channel, throws: &[&str]) -> Result<Meaning, Error> {
     })
 }
 
+/// What a column of this name and unit is called in a bundle: as its name says, else as its unit suggests in a machine of
+/// one throw; none where neither says anything.
+pub(crate) fn suggested_name(column: &str, unit: &str) -> Option<String> {
+    let channel = Channel {
+        name: String::new(),
+        column: column.to_owned(),
+        unit: unit.to_owned(),
+        file: None,
+        offset: None,
+        crank_angle_rad: None,
+    };
+    if !matches!(meaning(&channel, &[""]), Ok(Meaning::Other)) {
+        return Some(words(column));
+    }
+    let absolute = unit::gauge(unit).map_or(unit, |(_, of)| of);
+    let recorded = RECORDED.iter().find(|(name, ..)| *name == absolute);
+    let parsed = || unit::parse(&format!("1 {absolute}")).ok();
+    let dimension = match recorded {
+        Some((_, dimension, _)) => *dimension,
+        None => parsed()?.dimension,
+    };
+    let of = |quantity| unit_of_quantity(quantity).0 == dimension;
+    let suggestions = [
+        (Quantity::Acceleration, "crosshead acceleration"),
+        (Quantity::Pressure, "cylinder pressure"),
+        (Quantity::Angle, "crank angle"),
+    ];
+    let found = suggestions.iter().find(|(quantity, _)| of(*quantity));
+    found.map(|(_, name)| (*name).to_owned())
+}
+
+/// The standard atmosphere in the unit of a gauge; none for any other unit.
+pub(crate) fn ambient_pressure(unit: &str) -> Option<f64> {
+    let (_, absolute) = unit::gauge(unit)?;
+    let one_of = |unit: &str| unit::parse(&format!("1 {unit}")).ok();
+    let ambient = one_of("atm")?.si / one_of(absolute)?.si;
+    Some((1e4 * ambient).round() / 1e4)
+}
+
 /// Whether a channel has the time of each sample.
 pub(crate) fn is_time(channel: &Channel) -> bool {
     matches!(meaning(channel, &[]), Ok(Meaning::Time))

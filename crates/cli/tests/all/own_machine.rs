@@ -282,6 +282,49 @@ fn every_file_is_right_as_it_is_written() {
 }
 
 #[test]
+fn a_bundle_is_written_from_the_headings_of_its_recordings() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let rows = |i: usize| format!("{},{},{},7\n", i as f64 / 2000.0, i % 3, 10 + i % 2);
+    let rows: String = (0..50).map(rows).collect();
+    let csv = format!("Time [s],Vib [g],Head end (psig),Motor [V]\n{rows}");
+    std::fs::write(file("monday.csv"), csv).unwrap();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/recordings");
+    std::fs::copy(shipped.join("netcdf-4.nc"), file("tuesday.nc")).unwrap();
+    std::fs::write(file("notes.txt"), "no recording").unwrap();
+
+    let output = run(crosshead(&["init", "bundle", "--out"]).arg(file("recordings.yaml")));
+    let left_out = text(&output.stderr);
+    assert!(
+        left_out.contains("left out") && left_out.contains("notes.txt"),
+        "{left_out}"
+    );
+    run(crosshead(&["check"]).arg(file("recordings.yaml")));
+    let written = std::fs::read_to_string(file("recordings.yaml")).unwrap();
+    let values = |line: &str| line.split('#').next().unwrap_or_default().trim().to_owned();
+    let lines: Vec<String> = written.lines().map(values).collect();
+    for line in [
+        "file: monday.csv",
+        "sample_rate_hz: 2000.0",
+        "- name: crosshead acceleration",
+        "column: Vib [g]",
+        "unit: g",
+        "column: Head end (psig)",
+        "offset: 14.6959",
+        "- name: Motor [V]",
+        "file: tuesday.nc",
+        "- name: pressure",
+        "unit: kPa",
+    ] {
+        assert!(
+            lines.iter().any(|found| found == line),
+            "{line}:\n{written}"
+        );
+    }
+    assert!(!written.contains("notes"), "{written}");
+}
+
+#[test]
 fn a_bundle_gives_its_nominal_machine() {
     let folder = tempfile::tempdir().unwrap();
     let bundle = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -1,6 +1,7 @@
 //! A `recordings.yaml` to fill in.
 
 use super::comments::{Commented, commented};
+use crate::bundle_channel;
 use crate::error::Error;
 use crate::schema::{BUNDLE_FORMAT, bundle_schema};
 use serde_json::{Value, json};
@@ -9,18 +10,37 @@ use std::path::Path;
 const HEAD: &str = "\
 The recordings of a machine: fill in one entry of `runs` for each run, and save this as recordings.yaml beside the files.
 Files are CSV, WAV, MAT, HDF5, Parquet or MCAP. A run recorded in several has `files: [acceleration.csv, pressure.csv]` in the \
-place of `file`, and each channel its `file`.
+place of `file`, and each channel its `file`. Columns, units and rates are those of the files that were beside this one; \
+each `name` is a guess from them.
 `crosshead check FOLDER` finds all mistakes at once.
 The machine's values stand in a file of their own (--machine), or here in a section `machine` with the keys of one.";
 
-/// A `recordings.yaml` to fill in, with a run for each of `files`.
+/// What is known of a file of recordings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recorded {
+    /// Name of the file.
+    pub file: String,
+    /// Its columns but that of time, each with its unit, if it says one.
+    pub columns: Vec<(String, Option<String>)>,
+    /// Samples per second, if it says so.
+    pub sample_rate_hz: Option<f64>,
+}
+
+/// A `recordings.yaml` to fill in, with a run for each of `recorded`.
 ///
 /// # Errors
 /// None in practice: the content can be written as YAML.
-pub fn bundle(files: &[String]) -> Result<String, Error> {
-    let example = ["run01.csv".to_owned()];
-    let files = if files.is_empty() { &example } else { files };
-    let runs: Vec<Value> = files.iter().map(|file| run(file)).collect();
+pub fn bundle(recorded: &[Recorded]) -> Result<String, Error> {
+    let example = [Recorded {
+        file: "run01.csv".into(),
+        ..Recorded::default()
+    }];
+    let recorded = if recorded.is_empty() {
+        &example
+    } else {
+        recorded
+    };
+    let runs: Vec<Value> = recorded.iter().map(run).collect();
     let tree = json!({"format": BUNDLE_FORMAT, "runs": runs});
     commented(&Commented {
         tree: &tree,
@@ -31,41 +51,48 @@ pub fn bundle(files: &[String]) -> Result<String, Error> {
     })
 }
 
-/// The recordings in `folder`, in the order of their names.
-pub fn recordings_in(folder: &Path) -> Vec<String> {
-    let folder = match folder.as_os_str().is_empty() {
-        true => Path::new("."),
-        false => folder,
-    };
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let is_recording = |name: &String| {
-        let ending = Path::new(name).extension();
-        ending.is_some_and(|ending| ending == "csv" || ending == "parquet")
-    };
-    let mut names: Vec<String> = names.filter(is_recording).collect();
-    names.sort();
-    names
-}
-
-fn run(file: &str) -> Value {
+fn run(recorded: &Recorded) -> Value {
+    let file = &recorded.file;
     let id = Path::new(file)
         .file_stem()
         .map_or(file.into(), |stem| stem.to_string_lossy());
+    let channels = match recorded.columns.is_empty() {
+        true => json!([
+            {"name": "time", "column": "t_s", "unit": "s"},
+            {"name": "crank angle", "column": "crank_angle_rad", "unit": "rad"},
+            {"name": "crosshead acceleration", "column": "crosshead_acceleration_m_s2", "unit": "m/s2"},
+            {"name": "cylinder pressure", "column": "cylinder_pressure_pa", "unit": "Pa"},
+        ]),
+        false => channels(&recorded.columns),
+    };
     json!({
         "id": id,
         "file": file,
         "speed_rpm": 500,
         "load": {"suction_pressure_pa": 105_000.0, "discharge_pressure_pa": 393_000.0},
         "joints": {"big_end": {"clearance_m": 5e-5}, "small_end": {"clearance_m": 5e-5}},
-        "sample_rate_hz": 20_000.0,
-        "channels": [
-            {"name": "time", "column": "t_s", "unit": "s"},
-            {"name": "crank angle", "column": "crank_angle_rad", "unit": "rad"},
-            {"name": "crosshead acceleration", "column": "crosshead_acceleration_m_s2", "unit": "m/s2"},
-            {"name": "cylinder pressure", "column": "cylinder_pressure_pa", "unit": "Pa"},
-        ],
+        "sample_rate_hz": recorded.sample_rate_hz.unwrap_or(20_000.0),
+        "channels": channels,
     })
+}
+
+/// The columns of a file, each called what its name or its unit suggests. Of several whose unit suggests the same, the
+/// first is called so, and the others keep the names of their columns, which stand for nothing.
+fn channels(columns: &[(String, Option<String>)]) -> Value {
+    let mut suggested = Vec::new();
+    let channels = columns.iter().map(|(column, unit)| {
+        let unit = unit.as_deref().unwrap_or_default();
+        let name = bundle_channel::suggested_name(column, unit);
+        let name = name.filter(|name| !suggested.contains(name));
+        suggested.extend(name.clone());
+        let name = name.unwrap_or_else(|| column.clone());
+        let mut channel = json!({"name": name, "column": column, "unit": unit});
+        if let Some(ambient) = bundle_channel::ambient_pressure(unit) {
+            channel["offset"] = ambient.into();
+        }
+        channel
+    });
+    channels.collect()
 }
 
 fn note(path: &str) -> Option<String> {
@@ -82,7 +109,7 @@ fn note(path: &str) -> Option<String> {
              has it."
         }
         "runs.0.channels" => {
-            "Columns that are left out are not used. One of acceleration and pressure is needed. Of a machine with \
+            "`name` says what a column is; one of another name, and one that is left out, is not used. One of acceleration and pressure is needed. Of a machine with \
              several throws the name begins with that of the throw: `throw1 cylinder pressure`. A gauge pressure (barg, \
              psig) needs `offset`, the ambient pressure in the same unit. A pulse once per revolution is a channel \
              `tacho`."

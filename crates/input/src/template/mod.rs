@@ -5,7 +5,7 @@ mod calibration;
 mod comments;
 mod machine;
 
-pub use bundle::{bundle, recordings_in};
+pub use bundle::{Recorded, bundle};
 pub use calibration::calibration;
 pub use comments::{Commented, commented};
 pub use machine::{Asked, machine};

@@ -13,12 +13,14 @@ mod blanks;
 mod clock;
 pub(crate) mod expansion;
 mod format;
+mod heading;
 mod names;
 mod open;
 mod stated;
 mod windows;
 
 pub use blanks::{Bridge, LONGEST_BRIDGED};
+pub use heading::{Heading, headings};
 pub use names::stem;
 pub use windows::{Length, Window, Windows};
 
