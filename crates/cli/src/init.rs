@@ -90,6 +90,7 @@ fn run_of(heading: Heading) -> Recorded {
             .map(|channel| (channel.column, channel.unit))
             .collect(),
         sample_rate_hz: heading.sample_rate_hz,
+        speed_rpm: heading.speed_rpm,
     }
 }
 

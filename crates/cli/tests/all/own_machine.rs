@@ -291,6 +291,7 @@ fn a_bundle_is_written_from_the_headings_of_its_recordings() {
     std::fs::write(file("monday.csv"), csv).unwrap();
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/recordings");
     std::fs::copy(shipped.join("netcdf-4.nc"), file("tuesday.nc")).unwrap();
+    std::fs::copy(shipped.join("matlab-v7.3.mat"), file("wednesday.mat")).unwrap();
     std::fs::write(file("notes.txt"), "no recording").unwrap();
 
     let output = run(crosshead(&["init", "bundle", "--out"]).arg(file("recordings.yaml")));
@@ -315,6 +316,9 @@ fn a_bundle_is_written_from_the_headings_of_its_recordings() {
         "file: tuesday.nc",
         "- name: pressure",
         "unit: kPa",
+        "file: wednesday.mat",
+        "speed_rpm: 1796.0",
+        "unit: m/s^2",
     ] {
         assert!(
             lines.iter().any(|found| found == line),

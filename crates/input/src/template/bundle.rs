@@ -24,6 +24,8 @@ pub struct Recorded {
     pub columns: Vec<(String, Option<String>)>,
     /// Samples per second, if it says so.
     pub sample_rate_hz: Option<f64>,
+    /// Speed of the crank, rpm, if it says so.
+    pub speed_rpm: Option<f64>,
 }
 
 /// A `recordings.yaml` to fill in, with a run for each of `recorded`.
@@ -68,7 +70,7 @@ fn run(recorded: &Recorded) -> Value {
     json!({
         "id": id,
         "file": file,
-        "speed_rpm": 500,
+        "speed_rpm": recorded.speed_rpm.unwrap_or(500.0),
         "load": {"suction_pressure_pa": 105_000.0, "discharge_pressure_pa": 393_000.0},
         "joints": {"big_end": {"clearance_m": 5e-5}, "small_end": {"clearance_m": 5e-5}},
         "sample_rate_hz": recorded.sample_rate_hz.unwrap_or(20_000.0),

@@ -1,8 +1,8 @@
 //! What the recordings of a folder say of themselves, so that it need not be typed.
 
 use super::{MeasuredChannel, MeasuredFile, Options};
-use crate::Error;
 use crate::formats::FORMATS;
+use crate::{Column, Error, Value};
 use std::path::Path;
 
 /// The heading of a file of recordings.
@@ -14,6 +14,8 @@ pub struct Heading {
     pub channels: Vec<MeasuredChannel>,
     /// Samples per second, if the file says so.
     pub sample_rate_hz: Option<f64>,
+    /// Speed of the crank, rpm, if the file says so.
+    pub speed_rpm: Option<f64>,
 }
 
 /// The headings of the recordings in `folder`, in the order of their names: of the files that end as those of a format do.
@@ -45,9 +47,17 @@ fn is_recording(name: &str) -> bool {
 fn heading(folder: &Path, file: String) -> Result<Heading, Error> {
     let mut opened = MeasuredFile::open(&folder.join(&file), &Options::default())?;
     let first = opened.next().transpose()?;
+    let is_speed = |label: &Column| label.name == "speed_rpm";
+    let speed = opened.labels.iter().position(is_speed);
+    let label = |at: usize| first.as_ref()?.labels.get(at);
+    let speed_rpm = match speed.and_then(label) {
+        Some(Value::Real(speed)) => Some(*speed),
+        _ => None,
+    };
     Ok(Heading {
         file,
         channels: opened.channels,
-        sample_rate_hz: first.and_then(|recording| recording.sample_rate_hz()),
+        sample_rate_hz: first.and_then(|recording| recording.sample_rate_hz),
+        speed_rpm,
     })
 }
