@@ -10,8 +10,8 @@ use std::path::Path;
 const HEAD: &str = "\
 The recordings of a machine: fill in one entry of `runs` for each run, and save this as recordings.yaml beside the files.
 Files are CSV, WAV, MAT, HDF5, Parquet or MCAP. A run recorded in several has `files: [acceleration.csv, pressure.csv]` in the \
-place of `file`, and each channel its `file`. Columns, units and rates are those of the files that were beside this one; \
-each `name` is a guess from them.
+place of `file`, and each channel its `file`. Columns, units, rates and speeds are those of the files that were \
+beside this one, where they say them. All other numbers are examples to be replaced, and each `name` is a guess.
 `crosshead check FOLDER` finds all mistakes at once.
 The machine's values stand in a file of their own (--machine), or here in a section `machine` with the keys of one.";
 
