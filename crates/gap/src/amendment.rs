@@ -136,10 +136,10 @@ impl Amendment {
         probes
     }
 
-    /// These values in the other forms of its law; nothing where that has one form.
-    pub(crate) fn other_forms_of(&self, values: &[f64]) -> Vec<Vec<f64>> {
+    /// The form of its law at these values; nothing where it has one.
+    pub(crate) fn form_at(&self, values: &[f64]) -> Vec<f64> {
         self.effect()
-            .map_or(Vec::new(), |effect| effect.other_forms_of(values))
+            .map_or(Vec::new(), |effect| effect.form_at(values))
     }
 
     /// A probe at which hardly anything of it is left, so that a descent can leave it out.
@@ -161,7 +161,14 @@ impl Amendment {
         }
     }
 
-    /// How many parameters it has.
+    /// How many values it has.
+    pub(crate) fn count(&self) -> usize {
+        self.effect().map_or(1, |candidate| {
+            candidate.entry.parameters.len() * candidate.sets()
+        })
+    }
+
+    /// How many of them are searched.
     pub(crate) fn free(&self) -> usize {
         self.effect()
             .map_or(1, |candidate| candidate.free().count() * candidate.sets())

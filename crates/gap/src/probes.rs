@@ -74,14 +74,23 @@ impl Candidate {
         values
     }
 
+    /// Indices of the parameters that are the form of its law, but for its waves.
+    fn shapes(&self) -> Vec<usize> {
+        let waves = self.waves().concat();
+        self.free()
+            .filter(|i| self.entry.parameters[*i].shape && !waves.contains(i))
+            .collect()
+    }
+
+    /// The form of its law at these values.
+    pub fn form_at(&self, values: &[f64]) -> Vec<f64> {
+        self.shapes().into_iter().map(|i| values[i]).collect()
+    }
+
     /// These values with each part of the form of its law that is no wave in its other form, and with all of them.
     pub fn other_forms_of(&self, values: &[f64]) -> Vec<Vec<f64>> {
-        let waves = self.waves().concat();
         let count = self.entry.parameters.len();
-        let shapes: Vec<usize> = self
-            .free()
-            .filter(|i| self.entry.parameters[*i].shape && !waves.contains(i))
-            .collect();
+        let shapes = self.shapes();
         let with = |changed: &[usize]| {
             let mut probe = values.to_vec();
             for (i, value) in probe.iter_mut().enumerate() {
@@ -136,7 +145,6 @@ impl Candidate {
                 probes.extend(shares.iter().map(|share| amplitude(-share)));
             }
         }
-        probes.extend(self.other_forms_of(&usual));
         // What may lie anywhere is varied by itself.
         for (i, parameter) in parameters.iter().enumerate() {
             let [low, high] = parameter.bounds;
@@ -150,6 +158,10 @@ impl Candidate {
                 }));
             }
         }
+        // What one form does at its usual size takes many times that in another.
+        let others = probes.iter().flat_map(|probe| self.other_forms_of(probe));
+        let others: Vec<Vec<f64>> = others.collect();
+        probes.extend(others);
         probes
     }
 }
@@ -177,5 +189,35 @@ mod tests {
             assert!(pair[1][0] / pair[0][0] < 1.35, "{pair:?}");
         }
         assert!(probes[0][0] < 1.1e-5 && probes.last().unwrap()[0] > 2.4e-4);
+    }
+
+    #[test]
+    fn every_form_of_a_law_is_tried_at_every_amplitude() {
+        let all = Candidate::all(&problem());
+        let friction = all
+            .iter()
+            .find(|c| c.entry.name == "ring_friction")
+            .unwrap();
+        let probes = friction.probes(&problem());
+        let usual = friction.form_at(&friction.usual());
+        let sizes_of = |form: &[f64]| -> Vec<f64> {
+            let of_form = probes
+                .iter()
+                .filter(|probe| friction.form_at(probe) == form);
+            let shares = of_form.map(|probe| probe[0] / friction.usual()[0]);
+            let mut sizes: Vec<f64> = shares.collect();
+            sizes.sort_by(f64::total_cmp);
+            sizes
+        };
+        let sizes = sizes_of(&usual);
+        assert!(
+            AMPLITUDES.iter().all(|size| sizes.contains(size)),
+            "{sizes:?}"
+        );
+        let forms = friction.other_forms_of(&friction.usual());
+        assert!(!forms.is_empty());
+        for form in forms {
+            assert_eq!(sizes_of(&friction.form_at(&form)), sizes, "{form:?}");
+        }
     }
 }

@@ -28,6 +28,8 @@ use rayon::prelude::*;
 
 /// A probe is not scaled by more than this: further away the change is another one.
 const SCALED: f64 = 2.0;
+/// Forms of a law from which a fit may start, the most promising ones: which of two is right scores do not say.
+const FORMS: usize = 2;
 /// What is added to the squares of changes that may be alike, over the greatest.
 const RIDGE: f64 = 1e-6;
 
@@ -126,9 +128,9 @@ pub(crate) fn screen(
     if alone && nominal != model.x {
         bases.push(Base::at(&model.problem, &nominal));
     }
-    // The score and the probe there; nothing for what cannot be simulated.
+    // The best score and probe of each form, one after another; nothing for what cannot be simulated.
     let best = |amendment: &Amendment, base: &Base| -> Result<Finished, Error> {
-        let mut best: Option<(f64, Vec<f64>)> = None;
+        let mut best: Vec<(f64, Vec<f64>)> = Vec::new();
         let metered = model.problem.metered();
         let mut tried = |probes: Vec<Vec<f64>>| -> Result<Vec<DVector<f64>>, Error> {
             let mut changes = Vec::new();
@@ -140,9 +142,8 @@ pub(crate) fn screen(
                     continue;
                 };
                 let change = base.change(residuals(&with, &x));
-                let better = |score: &f64| best.as_ref().is_none_or(|(best, _)| score > best);
-                if let Some(score) = base.score(&change).filter(better) {
-                    best = Some((score, probe));
+                if let Some(score) = base.score(&change) {
+                    best.push((score, probe));
                 }
                 changes.push(change);
             }
@@ -158,8 +159,8 @@ pub(crate) fn screen(
         {
             tried(amendment.combinations(&shares))?;
         }
-        let found = best.into_iter();
-        let numbers = found.flat_map(|(score, probe)| [vec![score], probe].concat());
+        let best = best_of_each_form(best, amendment).into_iter();
+        let numbers = best.flat_map(|(score, probe)| [vec![score], probe].concat());
         Ok(Finished {
             numbers: numbers.collect(),
             cost: metered.meter.steps(),
@@ -173,14 +174,12 @@ pub(crate) fn screen(
                 .effort
                 .journal
                 .once(&input, || best(&amendment, base))?;
-            let (score, values) = found.split_first().unwrap_or((&f64::NEG_INFINITY, &[]));
-            scores.push(*score);
-            if score.is_finite() {
-                starts.push(Point {
-                    x: base.x.clone(),
-                    values: values.to_vec(),
-                });
-            }
+            scores.push(found.first().copied().unwrap_or(f64::NEG_INFINITY));
+            let probes = found.chunks_exact(1 + amendment.count());
+            starts.extend(probes.map(|probe| Point {
+                x: base.x.clone(),
+                values: probe[1..].to_vec(),
+            }));
         }
         let screened = Screened { amendment, starts };
         Ok((!screened.starts.is_empty()).then_some((screened, scores)))
@@ -188,6 +187,23 @@ pub(crate) fn screen(
     let screened = screened.collect::<Result<Vec<_>, Error>>()?;
     let all: Vec<(Screened, Vec<f64>)> = screened.into_iter().flatten().collect();
     Ok(ordered(all))
+}
+
+/// The best probes of the most promising forms of a law, the best first.
+fn best_of_each_form(
+    mut probes: Vec<(f64, Vec<f64>)>,
+    amendment: &Amendment,
+) -> Vec<(f64, Vec<f64>)> {
+    probes.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut forms: Vec<Vec<f64>> = Vec::new();
+    probes.retain(|(_, probe)| {
+        let form = amendment.form_at(probe);
+        let is_new = !forms.contains(&form);
+        forms.push(form);
+        is_new
+    });
+    probes.truncate(FORMS);
+    probes
 }
 
 /// The most promising first: by the place that each has at the point where it has the best one. Shares at different
@@ -219,6 +235,28 @@ fn ordered<T>(scored: Vec<(T, Vec<f64>)>) -> Vec<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixture::problem;
+
+    #[test]
+    fn the_best_probe_of_each_of_the_best_forms_is_left() {
+        let all = Amendment::all(&problem()).unwrap();
+        let with_forms = |one: &&Amendment| {
+            let effect = one.effect();
+            effect.is_some_and(|it| it.other_forms_of(&it.usual()).len() > FORMS)
+        };
+        let amendment = all.iter().find(with_forms).unwrap();
+        let effect = amendment.effect().unwrap();
+        let usual = effect.usual();
+        let other = effect.other_forms_of(&usual);
+        let scored = vec![
+            (0.2, other[0].clone()),
+            (0.3, usual.clone()),
+            (0.1, other[1].clone()),
+            (0.4, other[0].clone()),
+        ];
+        let best = best_of_each_form(scored, amendment);
+        assert_eq!(best, [(0.4, other[0].clone()), (0.3, usual)]);
+    }
 
     #[test]
     fn the_best_of_each_point_come_first() {

@@ -126,13 +126,9 @@ impl Search<'_> {
             let screened = screened.into_iter().take(EXCHANGED);
             trials.extend(screened.map(|screened| (without.clone(), screened)));
         }
-        let fitted = trials.into_par_iter().map(|(without, screened)| {
-            let Some(trial) = self.roughly(&without, &screened)? else {
-                return Ok(None);
-            };
-            let model = self.fitter.settled(&trial.start)?;
-            Ok(model.map(|model| Hypothesis::new(trial.set, model, own)))
-        });
+        let fitted = trials
+            .into_par_iter()
+            .map(|(without, screened)| self.settled(&self.roughly(&without, &screened)?));
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         Ok(fitted.into_iter().flatten().collect())
     }
@@ -155,10 +151,10 @@ impl Search<'_> {
             (self.fitter.say)(&words(node, "fitting roughly"), node.model.fitted);
             self.roughly(node, &screened)
         });
-        let rough = rough.collect::<Result<Vec<_>, Error>>()?;
-        let mut rough: Vec<Trial> = rough.into_iter().flatten().collect();
+        let mut rough = rough.collect::<Result<Vec<_>, Error>>()?;
+        rough.retain(|forms| !forms.is_empty());
         // What a freer law costs counts once it has been fitted.
-        rough.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
+        rough.sort_by(|a, b| a[0].deviance.total_cmp(&b[0].deviance));
         let count = if alone { REFINED } else { REFINED_BESIDE };
         let mut fitted = self.refined(&rough[..count.min(rough.len())], so_far)?;
         let mut lowest = Vec::new();
@@ -166,28 +162,56 @@ impl Search<'_> {
         let goes_on = self.fitter.effort.goes_on() && !of_pressures;
         if goes_on && !fitted.iter().any(|set| leaves_little(nothing, set)) {
             (self.fitter.say)("searching far away", so_far);
-            rough.truncate(TRIED);
-            lowest = self.far_away(&rough)?;
+            let first = rough
+                .into_iter()
+                .filter_map(|forms| forms.into_iter().next());
+            let first: Vec<Trial> = first.take(TRIED).collect();
+            lowest = self.far_away(&first)?;
             fitted.extend(self.descended(&lowest)?);
         }
         Ok(Beside { fitted, lowest })
     }
 
-    /// These trials fitted from where rough descents have led, and where that leaves more than noise in the machine as it was given.
-    fn refined(&self, trials: &[Trial], so_far: f64) -> Result<Vec<Hypothesis>, Error> {
+    /// These sets fitted from where rough descents of the forms of their last law have led, and where that leaves more than noise in the
+    /// machine as it was given.
+    fn refined(&self, rough: &[Vec<Trial>], so_far: f64) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.different.parameters.len();
-        let fitted = trials.par_iter().map(|trial| {
-            (self.fitter.say)(&trial.words(), so_far);
-            let mut model = self.fitter.settled(&trial.start)?;
-            if !model.as_ref().is_some_and(Fitter::is_at_noise) {
-                let given = self.fitter.explored(&[as_given(&trial.start, own)])?;
-                let both = model.into_iter().chain(given.map(|(model, _)| model));
-                model = both.min_by(|a, b| a.deviance.total_cmp(&b.deviance));
+        let fitted = rough.par_iter().map(|forms| {
+            if let Some(trial) = forms.first() {
+                (self.fitter.say)(&trial.words(), so_far);
             }
-            Ok(model.map(|model| Hypothesis::new(trial.set.clone(), model, own)))
+            let mut best = self.settled(forms)?;
+            let is_at_noise = |best: &Hypothesis| Fitter::is_at_noise(&best.model);
+            if let Some(trial) = forms.first()
+                && !best.as_ref().is_some_and(is_at_noise)
+            {
+                let given = self.fitter.explored(&[as_given(&trial.start, own)])?;
+                let given = given.map(|(model, _)| Hypothesis::new(trial.set.clone(), model, own));
+                best = likelier(best, given);
+            }
+            Ok(best)
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         Ok(fitted.into_iter().flatten().collect())
+    }
+
+    /// The likeliest of a set's forms, fitted from where rough descents have led; those after one that leaves no more than noise are not
+    /// fitted.
+    fn settled(&self, forms: &[Trial]) -> Result<Option<Hypothesis>, Error> {
+        let own = self.few.different.parameters.len();
+        let mut best: Option<Hypothesis> = None;
+        for Trial { set, start, .. } in forms {
+            let model = self.fitter.settled(start)?;
+            let model = model.map(|model| Hypothesis::new(set.clone(), model, own));
+            best = likelier(best, model);
+            if best
+                .as_ref()
+                .is_some_and(|best| Fitter::is_at_noise(&best.model))
+            {
+                break;
+            }
+        }
+        Ok(best)
     }
 
     /// These sets where descents lead from the machines as they are.
@@ -230,49 +254,56 @@ impl Search<'_> {
         screen(self.fitter, model, alone, amendments)
     }
 
-    /// A node with one amendment more, fitted roughly to runs that are alike.
-    fn roughly(&self, node: &Hypothesis, screened: &Screened) -> Result<Option<Trial>, Error> {
+    /// A node with one amendment more, fitted roughly to runs that are alike: each form of its law by itself, the best first. How far
+    /// a short descent comes does not say which form is right.
+    fn roughly(&self, node: &Hypothesis, screened: &Screened) -> Result<Vec<Trial>, Error> {
         let amendment = &screened.amendment;
         let problem = &added(&self.few.alike, &node.set)?;
-        let mut probes: Vec<(&[f64], Vec<f64>)> = Vec::new();
-        for point in &screened.starts {
-            probes.push((&point.x, point.values.clone()));
-            // Two leaks of other forms are alike where each form is at its bound, and nothing leads from there to a third. Pressures
-            // by themselves cost little.
-            if is_of_pressures(problem) {
-                let forms = amendment.other_forms_of(&point.values).into_iter();
-                probes.extend(forms.map(|values| (&point.x[..], values)));
-            }
-        }
+        let points = screened.starts.iter();
+        let mut probes: Vec<(&[f64], Vec<f64>)> = points
+            .map(|point| (&point.x[..], point.values.clone()))
+            .collect();
         // A descent that can leave it out does no worse than the node.
         if let Some(first) = screened.starts.first() {
             probes.push((&node.model.x, amendment.faint(&first.values)));
         }
-        let mut starts = Vec::new();
-        let mut values = Vec::new();
+        let mut forms: Vec<(Vec<f64>, Vec<Start>, Vec<Vec<f64>>)> = Vec::new();
         for (x, probe) in probes {
-            if let Some(start) = start(problem, x, amendment, &probe) {
-                starts.push(start);
-                values.push(probe);
+            let Some(start) = start(problem, x, amendment, &probe) else {
+                continue;
+            };
+            let form = amendment.form_at(&probe);
+            match forms.iter_mut().find(|(other, ..)| *other == form) {
+                Some((_, starts, values)) => {
+                    starts.push(start);
+                    values.push(probe);
+                }
+                None => forms.push((form, vec![start], vec![probe])),
             }
         }
-        let Some(rough) = self.fitter.roughly(&starts)? else {
-            return Ok(None);
-        };
-        let values = values.swap_remove(rough.start);
-        let Some(with) = possible(amendment.added(&node.model.problem, &values))? else {
-            return Ok(None);
-        };
-        let mut set = node.set.clone();
-        set.push(Amended {
-            amendment: amendment.clone(),
-            values,
+        let trials = forms.into_par_iter().map(|(_, starts, mut values)| {
+            let Some(rough) = self.fitter.roughly(&starts)? else {
+                return Ok(None);
+            };
+            let values = values.swap_remove(rough.start);
+            let Some(with) = possible(amendment.added(&node.model.problem, &values))? else {
+                return Ok(None);
+            };
+            let mut set = node.set.clone();
+            set.push(Amended {
+                amendment: amendment.clone(),
+                values,
+            });
+            Ok(Some(Trial {
+                deviance: rough.deviance,
+                set,
+                start: (with, rough.x),
+            }))
         });
-        Ok(Some(Trial {
-            deviance: rough.deviance,
-            set,
-            start: (with, rough.x),
-        }))
+        let trials = trials.collect::<Result<Vec<_>, Error>>()?;
+        let mut trials: Vec<Trial> = trials.into_iter().flatten().collect();
+        trials.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
+        Ok(trials)
     }
 }
 
@@ -345,6 +376,12 @@ fn add(nodes: &mut Vec<Hypothesis>, set: Hypothesis) {
         Some(_) => {}
         None => nodes.push(set),
     }
+}
+
+/// The one of two fits of a set that makes the recordings likelier.
+fn likelier(one: Option<Hypothesis>, other: Option<Hypothesis>) -> Option<Hypothesis> {
+    let both = one.into_iter().chain(other);
+    both.min_by(|a, b| a.model.deviance.total_cmp(&b.model.deviance))
 }
 
 /// The same amendments in the machine as it was given: without them its parameters may have been led far astray.
