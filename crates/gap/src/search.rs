@@ -162,10 +162,8 @@ impl Search<'_> {
         let goes_on = self.fitter.effort.goes_on() && !of_pressures;
         if goes_on && !fitted.iter().any(|set| leaves_little(nothing, set)) {
             (self.fitter.say)("searching far away", so_far);
-            let first = rough
-                .into_iter()
-                .filter_map(|forms| forms.into_iter().next());
-            let first: Vec<Trial> = first.take(TRIED).collect();
+            rough.truncate(TRIED);
+            let first: Vec<&Trial> = rough.iter().filter_map(|forms| forms.first()).collect();
             lowest = self.far_away(&first)?;
             fitted.extend(self.descended(&lowest)?);
         }
@@ -177,19 +175,17 @@ impl Search<'_> {
     fn refined(&self, rough: &[Vec<Trial>], so_far: f64) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.different.parameters.len();
         let fitted = rough.par_iter().map(|forms| {
-            if let Some(trial) = forms.first() {
-                (self.fitter.say)(&trial.words(), so_far);
+            let [first, ..] = &forms[..] else {
+                return Ok(None);
+            };
+            (self.fitter.say)(&first.words(), so_far);
+            let best = self.settled(forms)?;
+            if best.as_ref().is_some_and(is_at_noise) {
+                return Ok(best);
             }
-            let mut best = self.settled(forms)?;
-            let is_at_noise = |best: &Hypothesis| Fitter::is_at_noise(&best.model);
-            if let Some(trial) = forms.first()
-                && !best.as_ref().is_some_and(is_at_noise)
-            {
-                let given = self.fitter.explored(&[as_given(&trial.start, own)])?;
-                let given = given.map(|(model, _)| Hypothesis::new(trial.set.clone(), model, own));
-                best = likelier(best, given);
-            }
-            Ok(best)
+            let given = self.fitter.explored(&[as_given(&first.start, own)])?;
+            let given = given.map(|(model, _)| Hypothesis::new(first.set.clone(), model, own));
+            Ok(likelier(best, given))
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         Ok(fitted.into_iter().flatten().collect())
@@ -204,10 +200,7 @@ impl Search<'_> {
             let model = self.fitter.settled(start)?;
             let model = model.map(|model| Hypothesis::new(set.clone(), model, own));
             best = likelier(best, model);
-            if best
-                .as_ref()
-                .is_some_and(|best| Fitter::is_at_noise(&best.model))
-            {
+            if best.as_ref().is_some_and(is_at_noise) {
                 break;
             }
         }
@@ -227,12 +220,12 @@ impl Search<'_> {
 
     /// The machines of those of these trials whose energies are the lowest, however far away that is. What rough descents
     /// left of them does not count: it is the ringing in which they ended.
-    fn far_away(&self, trials: &[Trial]) -> Result<Vec<Hypothesis>, Error> {
+    fn far_away(&self, trials: &[&Trial]) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.different.parameters.len();
         let starts: Vec<&Start> = trials.iter().map(|trial| &trial.start).collect();
         let far = far_starts(self.fitter, &starts, own)?.into_iter();
         let machines = far.map(|(index, x)| {
-            let Trial { set, start, .. } = &trials[index];
+            let Trial { set, start, .. } = trials[index];
             let at = Model::at(start.0.clone(), &x, TIMING, self.fitter.effort);
             Ok(possible(at)?.map(|model| Hypothesis::new(set.clone(), model, own)))
         });
@@ -267,21 +260,21 @@ impl Search<'_> {
         if let Some(first) = screened.starts.first() {
             probes.push((&node.model.x, amendment.faint(&first.values)));
         }
-        let mut forms: Vec<(Vec<f64>, Vec<Start>, Vec<Vec<f64>>)> = Vec::new();
-        for (x, probe) in probes {
-            let Some(start) = start(problem, x, amendment, &probe) else {
-                continue;
-            };
-            let form = amendment.form_at(&probe);
-            match forms.iter_mut().find(|(other, ..)| *other == form) {
-                Some((_, starts, values)) => {
-                    starts.push(start);
-                    values.push(probe);
-                }
-                None => forms.push((form, vec![start], vec![probe])),
+        let mut forms: Vec<Vec<f64>> = Vec::new();
+        for (_, probe) in &probes {
+            let form = amendment.form_at(probe);
+            if !forms.contains(&form) {
+                forms.push(form);
             }
         }
-        let trials = forms.into_par_iter().map(|(_, starts, mut values)| {
+        let trials = forms.into_par_iter().map(|form| {
+            let of_form = probes
+                .iter()
+                .filter(|(_, probe)| amendment.form_at(probe) == form);
+            let started = of_form.filter_map(|(x, probe)| {
+                Some((start(problem, x, amendment, probe)?, probe.clone()))
+            });
+            let (starts, mut values): (Vec<Start>, Vec<Vec<f64>>) = started.unzip();
             let Some(rough) = self.fitter.roughly(&starts)? else {
                 return Ok(None);
             };
@@ -376,6 +369,10 @@ fn add(nodes: &mut Vec<Hypothesis>, set: Hypothesis) {
         Some(_) => {}
         None => nodes.push(set),
     }
+}
+
+fn is_at_noise(set: &Hypothesis) -> bool {
+    Fitter::is_at_noise(&set.model)
 }
 
 /// The one of two fits of a set that makes the recordings likelier.
