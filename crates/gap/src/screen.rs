@@ -28,8 +28,8 @@ use rayon::prelude::*;
 
 /// A probe is not scaled by more than this: further away the change is another one.
 const SCALED: f64 = 2.0;
-/// Forms of a law from which a fit may start, the most promising ones: which of two is right scores do not say.
-const FORMS: usize = 2;
+/// Forms of a law that are fitted, the most promising ones: which of two is right is known once they are.
+pub(crate) const FORMS: usize = 2;
 /// What is added to the squares of changes that may be alike, over the greatest.
 const RIDGE: f64 = 1e-6;
 
@@ -159,7 +159,12 @@ pub(crate) fn screen(
         {
             tried(amendment.combinations(&shares))?;
         }
-        let best = best_of_each_form(best, amendment).into_iter();
+        let mut best = best_of_each_form(best, amendment);
+        // Descents of pressures by themselves cost little, and say more than scores.
+        if !is_of_pressures(&model.problem) {
+            best.truncate(FORMS);
+        }
+        let best = best.into_iter();
         let numbers = best.flat_map(|(score, probe)| [vec![score], probe].concat());
         Ok(Finished {
             numbers: numbers.collect(),
@@ -189,7 +194,7 @@ pub(crate) fn screen(
     Ok(ordered(all))
 }
 
-/// The best probes of the most promising forms of a law, the best first.
+/// The best probe of each form of a law, the best first.
 fn best_of_each_form(
     mut probes: Vec<(f64, Vec<f64>)>,
     amendment: &Amendment,
@@ -202,7 +207,6 @@ fn best_of_each_form(
         forms.push(form);
         is_new
     });
-    probes.truncate(FORMS);
     probes
 }
 
@@ -238,11 +242,11 @@ mod tests {
     use crate::fixture::problem;
 
     #[test]
-    fn the_best_probe_of_each_of_the_best_forms_is_left() {
+    fn the_best_probe_of_each_form_is_left() {
         let all = Amendment::all(&problem()).unwrap();
         let with_forms = |one: &&Amendment| {
             let effect = one.effect();
-            effect.is_some_and(|it| it.other_forms_of(&it.usual()).len() > FORMS)
+            effect.is_some_and(|it| it.other_forms_of(&it.usual()).len() > 1)
         };
         let amendment = all.iter().find(with_forms).unwrap();
         let effect = amendment.effect().unwrap();
@@ -255,7 +259,12 @@ mod tests {
             (0.4, other[0].clone()),
         ];
         let best = best_of_each_form(scored, amendment);
-        assert_eq!(best, [(0.4, other[0].clone()), (0.3, usual)]);
+        let expected = [
+            (0.4, other[0].clone()),
+            (0.3, usual),
+            (0.1, other[1].clone()),
+        ];
+        assert_eq!(best, expected);
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::fitter::{Few, Fitter, Start};
 use crate::hypothesis::{Amended, Hypothesis, added, of_kinds, start};
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
-use crate::screen::{Screened, screen};
+use crate::screen::{FORMS, Screened, screen};
 use calibrate::energies::TIMING;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -296,6 +296,7 @@ impl Search<'_> {
         let trials = trials.collect::<Result<Vec<_>, Error>>()?;
         let mut trials: Vec<Trial> = trials.into_iter().flatten().collect();
         trials.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
+        trials.truncate(FORMS);
         Ok(trials)
     }
 }
