@@ -77,8 +77,7 @@ fn verdict(results: &Results) -> String {
     // An effect at two places is described once.
     sentences.dedup();
     let sentences = sentences.join(" ");
-    let forms: Vec<String> = results.effects.iter().filter_map(form).collect();
-    let sentences = format!("{sentences}{}", forms.concat());
+    let sentences = format!("{sentences}{}", forms(&results.effects));
     let [before, after] = [results.gap.before, results.gap.after].map(size);
     match results.verdict {
         Verdict::NoGap => format!(
@@ -98,13 +97,27 @@ fn verdict(results: &Results) -> String {
     }
 }
 
-/// What is known of the form of an effect's law, in a sentence.
-fn form(effect: &Effect) -> Option<String> {
-    let form = effect.form.as_ref()?;
-    Some(format!(
-        " Of the law of {}: {form}.",
-        text::words(&effect.label)
-    ))
+/// What is known of the forms of the effects' laws, a sentence for each form.
+fn forms(effects: &[Effect]) -> String {
+    let known = effects
+        .iter()
+        .filter_map(|effect| Some((text::words(&effect.label), effect.form.as_deref()?)));
+    sentences_of_forms(known.collect())
+}
+
+/// The same of labels and forms. One that effects share, as those at two places do, is stated once.
+fn sentences_of_forms(known: Vec<(String, &str)>) -> String {
+    let mut shared: Vec<(Vec<String>, &str)> = Vec::new();
+    for (label, form) in known {
+        match shared.iter_mut().find(|(_, other)| *other == form) {
+            Some((labels, _)) => labels.push(label),
+            None => shared.push((vec![label], form)),
+        }
+    }
+    let sentence = |(labels, form): &(Vec<String>, &str)| {
+        format!(" Of the law of {}: {form}.", labels.join(" and "))
+    };
+    shared.iter().map(sentence).collect()
 }
 
 /// The error of the simulated pressures, in a sentence.
@@ -115,7 +128,7 @@ fn pressure(results: &Results) -> String {
     };
     let [before, after] = [before, after].map(|pa| text::quantity(pa / 1e3, "kPa"));
     format!(
-        " The error of the simulated pressure (root mean square over the revolution) falls from {before} to {after}."
+        " The error of the simulated pressure (root mean square over the revolution) is {before} before and {after} after."
     )
 }
 
@@ -269,5 +282,17 @@ mod tests {
         let unidentifiable = parameter(5e-6, None);
         assert_eq!(View::value("m^2", &unidentifiable), "5\u{a0}mm²");
         assert_eq!(View::interval("m^2", &unidentifiable), "not identifiable");
+    }
+
+    #[test]
+    fn a_form_that_effects_share_is_stated_once() {
+        let known = |label: &str, form| (label.to_owned(), form);
+        let stated = sentences_of_forms(vec![
+            known("film big end", "long 1"),
+            known("valve loss", "linear 0.2"),
+            known("film small end", "long 1"),
+        ]);
+        let expected = " Of the law of film big end and film small end: long 1. Of the law of valve loss: linear 0.2.";
+        assert_eq!(stated, expected);
     }
 }
