@@ -173,7 +173,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
             drift: layout.gas.map(two),
             centres: self.gas.centres.filter(|_| at.is_constant),
         };
-        self.gas = cylinder.gas::<PLAIN>();
+        cylinder.find::<PLAIN>(&mut self.gas);
         let spring = effects.rod();
         self.loads.find::<PLAIN>(
             throw,

@@ -6,6 +6,7 @@
 use super::acts::{Acts, JointAt, RodSpring, Shape};
 use super::place::{End, Joint, Place};
 use super::{Effect, Law};
+use crate::declaration::Kind;
 use crate::plane::{Vec2, turned};
 use scalar::{Scalar, inlined};
 
@@ -43,6 +44,17 @@ impl<'a, S: Scalar> Acting<'a, S> {
     #[inline(always)]
     pub fn any(self) -> bool {
         !self.effects.is_empty()
+    }
+
+    /// Whether any of them acts on this part of the machine.
+    #[inline(always)]
+    pub fn any_on(self, part: Kind) -> bool {
+        for effect in self.all() {
+            if effect.kind() == part {
+                return true;
+            }
+        }
+        false
     }
 
     /// All of them.

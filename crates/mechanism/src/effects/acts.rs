@@ -4,7 +4,8 @@ use crate::plane::Vec2;
 use scalar::Scalar;
 use std::f64::consts::FRAC_PI_2;
 
-/// What a law does at each place where effects can act. A law implements the methods that it needs.
+/// What a law does at each place where effects can act. A law implements the methods that it needs; those of the chambers are
+/// asked of laws of [`Kind::Gas`](crate::declaration::Kind::Gas) alone.
 pub(crate) trait Acts<S: Scalar> {
     /// Pressures at which the suction and the discharge valve hold a chamber while open, Pa, from
     /// those without this effect.

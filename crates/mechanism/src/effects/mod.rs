@@ -18,7 +18,7 @@ pub(crate) use acts::{Acts, ChamberAt, HARDENED, JointAt, PistonAt, RodSpring, S
 pub use alternatives::{Alternatives, Oval, Shaken};
 pub use place::{End, Joint, Place};
 
-use crate::declaration::Declaration;
+use crate::declaration::{Declaration, Kind};
 use crate::lift::{alternatives, parameters};
 use crate::plane::Vec2;
 use scalar::Scalar;
@@ -60,6 +60,16 @@ macro_rules! catalogue {
             /// What an effect does, with its parameters.
             pub enum Law<S> {
                 $( #[doc = concat!("See [`", stringify!($kind), "`].")] $kind($kind), )*
+            }
+        }
+
+        impl<S> Law<S> {
+            /// The part of the machine that it acts on.
+            #[inline(always)]
+            pub fn kind(&self) -> Kind {
+                match self {
+                    $( Self::$kind(_) => $module::DECLARATION.kind, )*
+                }
             }
         }
 

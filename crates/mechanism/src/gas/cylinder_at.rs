@@ -3,6 +3,7 @@
 use super::chamber::{Chamber, GasState};
 use super::cylinder::area;
 use super::throw_gas::Gas;
+use crate::declaration::Kind;
 use crate::effects::{Acting, Acts, ChamberAt, End, PistonAt};
 use crate::joints::revolute::Revolute;
 use crate::machine::Throw;
@@ -36,36 +37,36 @@ pub(crate) struct CylinderAt<'a, S> {
 }
 
 impl<S: Scalar> CylinderAt<'_, S> {
-    /// The gas of the throw (MODEL.md, sections 3 and 6), and the effects on the piston.
+    /// Finds the gas of the throw (MODEL.md, sections 3 and 6), and the effects on the piston, in place.
     #[inline(always)]
-    pub fn gas<const PLAIN: bool>(&self) -> Gas<S> {
+    pub fn find<const PLAIN: bool>(&self, gas: &mut Gas<S>) {
         let (throw, motion) = (self.throw, self.motion);
         let cylinder = &throw.cylinder;
         let face = area(cylinder.piston_radius);
         let reach = throw.crank_radius + throw.rod.length;
         let to_head = cylinder.head_clearance + reach - motion.crosshead;
-        let (head_end, head) = self.chamber::<PLAIN>(End::Head, cylinder.head_clearance, to_head);
-        let mut crank = None;
-        let (crank_end, force) = match &cylinder.crank_end {
-            None => (GasState::none(), (cylinder.back - head_end.pressure) * face),
+        let mut seen = [None, None];
+        let [head, crank] = &mut seen;
+        let dead = cylinder.head_clearance;
+        self.chamber::<PLAIN>(End::Head, dead, to_head, &mut gas.head_end, head);
+        gas.force = match &cylinder.crank_end {
+            None => (cylinder.back - gas.head_end.pressure) * face,
             Some(end) => {
                 let to_cover =
                     end.clearance + motion.crosshead - (throw.rod.length - throw.crank_radius);
-                let (gas, seen) = self.chamber::<PLAIN>(End::Crank, end.clearance, to_cover);
-                crank = seen;
+                let dead = end.clearance;
+                self.chamber::<PLAIN>(End::Crank, dead, to_cover, &mut gas.crank_end, crank);
                 let rod = area(end.rod_radius);
-                let force = gas
-                    .pressure
-                    .mul_add(face - rod, cylinder.back * rod - head_end.pressure * face);
-                (gas, force)
+                let back = cylinder.back * rod - gas.head_end.pressure * face;
+                gas.crank_end.pressure.mul_add(face - rod, back)
             }
         };
-        let effects = match self.effects.any() {
+        gas.effects = match self.effects.any() {
             false => S::zero(),
             true => {
                 let piston = PistonAt {
                     speed: motion.crosshead_rate,
-                    pressure: head_end.pressure,
+                    pressure: gas.head_end.pressure,
                     discharge: throw.cylinder.discharge,
                     angle: motion.angle,
                     crank_speed: self.speed,
@@ -74,7 +75,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
                     crank_radius: throw.crank_radius,
                     rod_length: throw.rod.length,
                     rod_slope: motion.rod_sin_cos.0 / motion.rod_sin_cos.1,
-                    gas_force: force,
+                    gas_force: gas.force,
                     area: face,
                     offsets: [
                         eccentricity(&throw.big_end, self.offsets[0]),
@@ -88,41 +89,56 @@ impl<S: Scalar> CylinderAt<'_, S> {
                 sum
             }
         };
-        Gas {
-            head_end,
-            crank_end,
-            force,
-            effects,
-            drift: self.drifts([(&head_end, head), (&crank_end, crank)]),
-            centres: head.map(|head| [head.lines, crank.map_or(head.lines, |crank| crank.lines)]),
-        }
+        gas.drift = self.drifts([&gas.head_end, &gas.crank_end], &mut seen);
+        let [head, crank] = &seen;
+        gas.centres = match (head, crank) {
+            (None, _) => None,
+            (Some(head), None) => Some([head.lines, head.lines]),
+            (Some(head), Some(crank)) => Some([head.lines, crank.lines]),
+        };
     }
 
-    /// The chamber at one end with its piston `distance` from the cover, `dead` at the dead centre;
-    /// and as effects see it, where there are any.
+    /// Finds the chamber at one end with its piston `distance` from the cover, `dead` at the dead centre; and as effects see it,
+    /// where any act on the gas.
     #[inline(always)]
     fn chamber<const PLAIN: bool>(
         &self,
         end: End,
         dead: S,
         distance: S,
-    ) -> (GasState<S>, Option<ChamberAt<S>>) {
+        state: &mut GasState<S>,
+        seen: &mut Option<ChamberAt<S>>,
+    ) {
         match PLAIN {
-            true => self.chamber_here(end, dead, distance),
-            false => self.chamber_apart(end, dead, distance),
+            true => self.chamber_here(end, dead, distance, state, seen),
+            false => self.chamber_apart(end, dead, distance, state, seen),
         }
     }
 
     #[inline(never)]
-    fn chamber_apart(&self, end: End, dead: S, distance: S) -> (GasState<S>, Option<ChamberAt<S>>) {
+    fn chamber_apart(
+        &self,
+        end: End,
+        dead: S,
+        distance: S,
+        state: &mut GasState<S>,
+        seen: &mut Option<ChamberAt<S>>,
+    ) {
         S::vectorised(
             #[inline(always)]
-            || self.chamber_here(end, dead, distance),
+            || self.chamber_here(end, dead, distance, state, seen),
         )
     }
 
     #[inline(always)]
-    fn chamber_here(&self, end: End, dead: S, distance: S) -> (GasState<S>, Option<ChamberAt<S>>) {
+    fn chamber_here(
+        &self,
+        end: End,
+        dead: S,
+        distance: S,
+        state: &mut GasState<S>,
+        as_seen: &mut Option<ChamberAt<S>>,
+    ) {
         let (throw, cylinder) = (self.throw, &self.throw.cylinder);
         let (expanding, mode) = match end {
             End::Head => (self.mode.outward, &self.mode.head_end),
@@ -135,24 +151,24 @@ impl<S: Scalar> CylinderAt<'_, S> {
             lines,
             exponents: [cylinder.exponent, cylinder.expansion_exponent],
         };
-        if !self.effects.any() {
-            return (chamber.state(distance, expanding, lines, None, mode), None);
+        if !self.effects.any_on(Kind::Gas) {
+            *state = chamber.state(distance, expanding, lines, None, mode);
+            return;
         }
         chamber.filled -= self.retreat(end);
-        let mut seen = self.seen(end, &chamber, distance, expanding, mode);
+        let seen = as_seen.insert(self.seen(end, &chamber, distance, expanding, mode));
         chamber.lines = match self.centres {
             Some(known) => known[end as usize],
             None => self.lines_at_centres(end, seen),
         };
         seen.lines = chamber.lines;
         let drift = self.drift.map(|drift| drift[end as usize]);
-        let open = self.lines(end, &seen);
-        let state = chamber.state(distance, expanding, open, drift, mode);
+        let open = self.lines(end, seen);
+        *state = chamber.state(distance, expanding, open, drift, mode);
         seen.pressure = state.pressure;
         if drift.is_some() {
             seen.warmth = chamber.warmth(state.pressure, distance, expanding);
         }
-        (state, Some(seen))
     }
 
     /// The chamber as effects see it, before its pressure is known.
@@ -205,7 +221,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
     /// Suction and discharge pressure where the valves leave off and the strokes start, at the dead
     /// centres.
     #[inline(always)]
-    fn lines_at_centres(&self, end: End, seen: ChamberAt<S>) -> [S; 2] {
+    fn lines_at_centres(&self, end: End, seen: &ChamberAt<S>) -> [S; 2] {
         let angles = match end {
             End::Head => [PI, 0.0],
             End::Crank => [0.0, PI],
@@ -215,7 +231,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
             let at_centre = ChamberAt {
                 angle: S::constant(angle),
                 growth: S::zero(),
-                ..seen
+                ..*seen
             };
             lines[i] = self.lines(end, &at_centre)[i];
         }
@@ -253,24 +269,26 @@ impl<S: Scalar> CylinderAt<'_, S> {
     /// Rates of the drifts of both chambers, 1/s; while a valve is open there is none, unless it is one that
     /// the drift has opened again.
     #[inline(always)]
-    fn drifts(&self, chambers: [(&GasState<S>, Option<ChamberAt<S>>); 2]) -> [S; 2] {
+    fn drifts(&self, states: [&GasState<S>; 2], seen: &mut [Option<ChamberAt<S>>; 2]) -> [S; 2] {
         // The first is known to the compiler where a machine is plain.
-        if !self.effects.any() || self.drift.is_none() {
+        if !self.effects.any_on(Kind::Gas) || self.drift.is_none() {
             return [S::zero(); 2];
         }
         let mut drifts = [S::zero(); 2];
         for end in [End::Head, End::Crank] {
-            let (state, Some(mut chamber)) = chambers[end as usize] else {
+            let across = seen[1 - end as usize].as_ref().map(|other| other.pressure);
+            let Some(chamber) = &mut seen[end as usize] else {
                 continue;
             };
-            if let Some(other) = chambers[1 - end as usize].1 {
-                chamber.across = other.pressure;
+            if let Some(across) = across {
+                chamber.across = across;
             }
             let mut rate = S::zero();
             for effect in self.effects.at_end(end) {
-                rate += effect.drift(&chamber);
+                rate += effect.drift(chamber);
             }
-            drifts[end as usize] = chamber.closed * rate + self.reopened(end, state, rate);
+            let reopened = self.reopened(end, states[end as usize], rate);
+            drifts[end as usize] = chamber.closed * rate + reopened;
         }
         drifts
     }
