@@ -8,10 +8,10 @@ use crate::error::Error;
 use crate::likelihood::{FAILED, amplitude, push, stacked, weights};
 use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
-use crate::prediction::{Accuracy, Prediction, to_a_thread};
+use crate::prediction::{Accuracy, Prediction, Wanted, to_a_thread};
 use crate::problem::Problem;
 use crate::sectors::{FIRST, KNOCKING, Sectors, between_orders, counts, knocks, noise};
-use crate::superposition::Superposition;
+use crate::superposition::{self, Superposition};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use signal::Complex64;
@@ -130,6 +130,14 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// The residuals of a run where it could be simulated.
+    fn residuals(&self, prediction: Result<Prediction, Error>) -> Vec<f64> {
+        prediction.map_or_else(
+            |_| vec![FAILED; residual_count(self.observed)],
+            |prediction| self.compared(&prediction, 0).0,
+        )
+    }
+
     /// The residuals of a run, channel by channel: its lowest lines, then its bands; with their derivatives by `count`
     /// coordinates.
     fn compared(&self, prediction: &Prediction, count: usize) -> (Vec<f64>, DMatrix<f64>) {
@@ -225,6 +233,33 @@ impl<'a> Energies<'a> {
         residuals.map(squares).collect()
     }
 
+    /// The residuals of other machines in the same runs, each at its own coordinates. Those that are not taken apart into throws are
+    /// simulated side by side.
+    pub fn residuals_of_machines(&self, machines: &[(Problem, Vec<f64>)]) -> Vec<Vec<f64>> {
+        let apart: Vec<Superposition> = machines
+            .iter()
+            .map(|(problem, _)| Superposition::new(problem))
+            .collect();
+        let wanted = machines.iter().zip(&apart).flat_map(|((_, x), machine)| {
+            let runs = self.runs.iter();
+            runs.map(move |run| (machine, (run, &x[..])))
+        });
+        let wanted: Vec<(&Superposition, (&Run, &[f64]))> = wanted.collect();
+        let parts: Vec<Vec<f64>> = wanted
+            .par_chunks(to_a_thread(wanted.len()))
+            .flat_map_iter(|wanted| {
+                let runs = wanted.iter();
+                let runs = runs.map(|(machine, (run, x))| (*machine, (run.observed, *x)));
+                let runs: Vec<(&Superposition, Wanted)> = runs.collect();
+                let found = superposition::predictions_of_machines(&runs, Accuracy::Rough);
+                let found = found.into_iter().zip(wanted);
+                found.map(|(prediction, (_, (run, _)))| run.residuals(prediction))
+            })
+            .collect();
+        let of_each = parts.chunks(self.runs.len().max(1));
+        of_each.map(<[Vec<f64>]>::concat).collect()
+    }
+
     /// Where exchanges of throws lead from this choice of a point for each throw, and what is left there.
     fn exchange(&self, all: &[Vec<f64>], mut chosen: Vec<usize>) -> (Vec<usize>, f64) {
         let mut least = self.squares_of_mixture(&points(all, &chosen));
@@ -270,13 +305,10 @@ impl<'a> Energies<'a> {
             .machine
             .predictions(&wanted, Accuracy::Rough)
             .into_iter();
-        let residuals = predictions.zip(runs).map(|(prediction, (run, _))| {
-            prediction.map_or_else(
-                |_| vec![FAILED; residual_count(run.observed)],
-                |prediction| run.compared(&prediction, 0).0,
-            )
-        });
-        residuals.collect()
+        let residuals = predictions.zip(runs);
+        residuals
+            .map(|(prediction, (run, _))| run.residuals(prediction))
+            .collect()
     }
 
     /// The derivatives of a run's residuals: those of a motion that has settled.

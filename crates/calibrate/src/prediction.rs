@@ -140,12 +140,24 @@ pub(crate) fn predictions(
     wanted: &[Wanted],
     accuracy: Accuracy,
 ) -> Vec<Result<Prediction, Error>> {
+    let wanted: Vec<_> = wanted.iter().map(|wanted| (problem, *wanted)).collect();
+    predictions_of_machines(&wanted, accuracy)
+}
+
+/// The same of several machines.
+///
+/// # Errors
+/// As [`predict`], each its own.
+pub(crate) fn predictions_of_machines(
+    wanted: &[(&Problem, Wanted)],
+    accuracy: Accuracy,
+) -> Vec<Result<Prediction, Error>> {
     let all = wanted.iter();
-    let all = all.map(|(run, x)| At::new(problem, run, x, accuracy));
+    let all = all.map(|(problem, (run, x))| At::new(problem, run, x, accuracy));
     let all: Vec<Result<At, Error>> = all.collect();
     let asked: Vec<Asked> = all.iter().flatten().map(At::asked).collect();
     let mut records = settled_together(&asked).into_iter();
-    let of = |at: Result<At, Error>| {
+    let of = |(at, (problem, _)): (Result<At, Error>, &(&Problem, Wanted))| {
         let at = at?;
         let record = records.next();
         let record = at.recorded(record.ok_or(Error::Nothing("nothing was simulated"))?)?;
@@ -160,7 +172,7 @@ pub(crate) fn predictions(
             ..Prediction::new(lines, record.settled)
         })
     };
-    all.into_iter().map(of).collect()
+    all.into_iter().zip(wanted).map(of).collect()
 }
 
 /// The motion that a run settles on from where its simulations begin, with the parameters at these coordinates; none where it

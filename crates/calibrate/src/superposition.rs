@@ -6,7 +6,7 @@
 
 use crate::error::Error;
 use crate::observation::Observation;
-use crate::prediction::{Accuracy, Prediction, Wanted, predictions, with_derivatives};
+use crate::prediction::{self, Accuracy, Prediction, Wanted, predictions, with_derivatives};
 use crate::problem::Problem;
 use crate::throw_alone::{ThrowAlone, throws_in_parts};
 use signal::order_lines::OrderLines;
@@ -27,6 +27,31 @@ pub(crate) struct Superposition<'a> {
 
 /// A prediction of a throw: which throw, which run, with derivatives or without, how accurate, and the bits of its coordinates.
 type Asked = (usize, String, (bool, Accuracy), Vec<u64>);
+
+/// The predictions of runs of several machines without derivatives. Those of machines that are simulated as a whole are simulated
+/// side by side.
+///
+/// # Errors
+/// As [`predictions`].
+pub(crate) fn predictions_of_machines(
+    wanted: &[(&Superposition, Wanted)],
+    accuracy: Accuracy,
+) -> Vec<Result<Prediction, Error>> {
+    let is_whole = |machine: &Superposition| machine.throws.is_empty();
+    let whole = wanted.iter().filter(|(machine, _)| is_whole(machine));
+    let whole: Vec<_> = whole
+        .map(|(machine, run)| (machine.problem, *run))
+        .collect();
+    let mut whole = prediction::predictions_of_machines(&whole, accuracy).into_iter();
+    let of = |(machine, run): &(&Superposition, Wanted)| {
+        let found = match is_whole(machine) {
+            true => whole.next(),
+            false => machine.predictions(&[*run], accuracy).pop(),
+        };
+        found.unwrap_or(Err(Error::Nothing("nothing was simulated")))
+    };
+    wanted.iter().map(of).collect()
+}
 
 impl<'a> Superposition<'a> {
     /// Of this problem.

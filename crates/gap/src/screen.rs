@@ -13,7 +13,7 @@
 
 use crate::amendment::Amendment;
 use crate::error::Error;
-use crate::fitter::Fitter;
+use crate::fitter::{Fitter, Start};
 use crate::hypothesis::start;
 use crate::journal::Finished;
 use crate::model::Model;
@@ -52,25 +52,41 @@ pub(crate) struct Point {
 }
 
 /// A point at which candidates are looked at, and what is left there.
-struct Base {
+struct Base<'a> {
     x: Vec<f64>,
+    /// What is compared, but for pressures alone.
+    energies: Option<Energies<'a>>,
     residual: DVector<f64>,
     projector: Projector,
     left: DVector<f64>,
 }
 
-impl Base {
-    fn at(problem: &Problem, x: &[f64]) -> Self {
-        let residual = DVector::from_vec(residuals(problem, x));
-        let projector = Projector::new(&match is_of_pressures(problem) {
-            true => Likelihood::new(problem).jacobian(x),
-            false => Energies::new(problem).jacobian(x),
-        });
+impl<'a> Base<'a> {
+    fn at(problem: &'a Problem, x: &[f64]) -> Self {
+        let energies = (!is_of_pressures(problem)).then(|| Energies::new(problem));
+        let (residual, jacobian) = match &energies {
+            Some(energies) => (energies.residuals(x), energies.jacobian(x)),
+            None => {
+                let lines = Likelihood::new(problem);
+                (lines.residuals(x), lines.jacobian(x))
+            }
+        };
+        let (residual, projector) = (DVector::from_vec(residual), Projector::new(&jacobian));
         Self {
             x: x.to_vec(),
+            energies,
             left: projector.apply(&residual),
             residual,
             projector,
+        }
+    }
+
+    /// The residuals of other machines: of the lines of pressures alone, of energies elsewhere.
+    fn residuals_of(&self, machines: &[Start]) -> Vec<Vec<f64>> {
+        let lines = |(problem, x): &Start| Likelihood::new(problem).residuals(x);
+        match &self.energies {
+            Some(energies) => energies.residuals_of_machines(machines),
+            None => machines.iter().map(lines).collect(),
         }
     }
 
@@ -103,14 +119,6 @@ impl Base {
     }
 }
 
-/// What is compared: the lines of pressures alone, energies elsewhere.
-fn residuals(problem: &Problem, x: &[f64]) -> Vec<f64> {
-    match is_of_pressures(problem) {
-        true => Likelihood::new(problem).residuals(x),
-        false => Energies::new(problem).residuals(x),
-    }
-}
-
 /// The amendments, the most promising first. Those that cannot be simulated are left out. They are
 /// looked at where the machine is fitted; a machine to which nothing was added (`alone`) also where it is nominal: without
 /// what is missing a fit may have gone far astray.
@@ -133,19 +141,20 @@ pub(crate) fn screen(
         let mut best: Vec<(f64, Vec<f64>)> = Vec::new();
         let metered = model.problem.metered();
         let mut tried = |probes: Vec<Vec<f64>>| -> Result<Vec<DVector<f64>>, Error> {
-            let mut changes = Vec::new();
-            for probe in probes {
-                if (fitter.watch)().is_break() {
-                    return Err(Error::Stopped);
-                }
-                let Some((with, x)) = start(&metered, &base.x, amendment, &probe) else {
-                    continue;
-                };
-                let change = base.change(residuals(&with, &x));
-                if let Some(score) = base.score(&change) {
+            if (fitter.watch)().is_break() {
+                return Err(Error::Stopped);
+            }
+            let machines = probes.into_iter().filter_map(|probe| {
+                let machine = start(&metered, &base.x, amendment, &probe)?;
+                Some((machine, probe))
+            });
+            let (machines, probes): (Vec<Start>, Vec<Vec<f64>>) = machines.unzip();
+            let residuals = base.residuals_of(&machines).into_iter();
+            let changes: Vec<_> = residuals.map(|there| base.change(there)).collect();
+            for (probe, change) in probes.into_iter().zip(&changes) {
+                if let Some(score) = base.score(change) {
                     best.push((score, probe));
                 }
-                changes.push(change);
             }
             Ok(changes)
         };
