@@ -49,6 +49,7 @@ mod search;
 mod stability_selection;
 pub mod steps;
 mod summary;
+mod trial;
 
 pub use amendment::Amendment;
 pub use candidate::Candidate;

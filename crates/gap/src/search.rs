@@ -10,10 +10,11 @@ use crate::criteria::{explains, left};
 use crate::error::{Error, possible};
 use crate::far_starts::far_starts;
 use crate::fitter::{Few, Fitter, Start};
-use crate::hypothesis::{Amended, Hypothesis, added, of_kinds, start};
+use crate::hypothesis::{Hypothesis, added, of_kinds};
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
-use crate::screen::{FORMS, Screened, screen};
+use crate::screen::{Screened, screen};
+use crate::trial::{Trial, is_at_noise, likelier, settled, trials};
 use calibrate::energies::TIMING;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -108,7 +109,7 @@ impl Search<'_> {
     /// as the node has it: without what is missing a fit goes astray, and what two kinds have in common does not show there.
     fn exchanged(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.different.parameters.len();
-        let mut trials = Vec::new();
+        let mut others = Vec::new();
         for (one, (set, (problem, x))) in
             node.set.iter().zip(node.without_one(&self.few.different)?)
         {
@@ -119,16 +120,17 @@ impl Search<'_> {
             let without = Hypothesis::new(set, model, own);
             let of_other_kind =
                 |other: &&Amendment| other.kind() != one.amendment.kind() && !without.has(other);
-            let others = self.amendments.iter().filter(of_other_kind).cloned();
+            let rivals = self.amendments.iter().filter(of_other_kind).cloned();
             (self.fitter.say)(&words(node, "rivals"), node.model.fitted);
-            let screened = self.screened(&without, false, others.collect())?;
+            let screened = self.screened(&without, false, rivals.collect())?;
             let screened = best_of_each_kind(screened, 1);
             let screened = screened.into_iter().take(EXCHANGED);
-            trials.extend(screened.map(|screened| (without.clone(), screened)));
+            others.extend(screened.map(|screened| (without.clone(), screened)));
         }
-        let fitted = trials
-            .into_par_iter()
-            .map(|(without, screened)| self.settled(&self.roughly(&without, &screened)?));
+        let fitted = others.into_par_iter().map(|(without, screened)| {
+            let forms = trials(self.fitter, self.few, &without, &screened)?;
+            settled(self.fitter, &forms, own)
+        });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         Ok(fitted.into_iter().flatten().collect())
     }
@@ -149,7 +151,7 @@ impl Search<'_> {
         let chosen = in_turn(beam, of_each, TRIED * beam.len());
         let rough = chosen.into_par_iter().map(|(node, screened)| {
             (self.fitter.say)(&words(node, "fitting roughly"), node.model.fitted);
-            self.roughly(node, &screened)
+            trials(self.fitter, self.few, node, &screened)
         });
         let mut rough = rough.collect::<Result<Vec<_>, Error>>()?;
         rough.retain(|forms| !forms.is_empty());
@@ -179,7 +181,7 @@ impl Search<'_> {
                 return Ok(None);
             };
             (self.fitter.say)(&first.words(), so_far);
-            let best = self.settled(forms)?;
+            let best = settled(self.fitter, forms, own)?;
             if best.as_ref().is_some_and(is_at_noise) {
                 return Ok(best);
             }
@@ -189,22 +191,6 @@ impl Search<'_> {
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         Ok(fitted.into_iter().flatten().collect())
-    }
-
-    /// The likeliest of a set's forms, fitted from where rough descents have led; those after one that leaves no more than noise are not
-    /// fitted.
-    fn settled(&self, forms: &[Trial]) -> Result<Option<Hypothesis>, Error> {
-        let own = self.few.different.parameters.len();
-        let mut best: Option<Hypothesis> = None;
-        for Trial { set, start, .. } in forms {
-            let model = self.fitter.settled(start)?;
-            let model = model.map(|model| Hypothesis::new(set.clone(), model, own));
-            best = likelier(best, model);
-            if best.as_ref().is_some_and(is_at_noise) {
-                break;
-            }
-        }
-        Ok(best)
     }
 
     /// These sets where descents lead from the machines as they are.
@@ -245,59 +231,6 @@ impl Search<'_> {
         let model = possible(Model::at(alike, x, timing, self.fitter.effort))?;
         let model = model.as_ref().unwrap_or(&node.model);
         screen(self.fitter, model, alone, amendments)
-    }
-
-    /// A node with one amendment more, fitted roughly to runs that are alike: each form of its law by itself, the best first. How far
-    /// a short descent comes does not say which form is right.
-    fn roughly(&self, node: &Hypothesis, screened: &Screened) -> Result<Vec<Trial>, Error> {
-        let amendment = &screened.amendment;
-        let problem = &added(&self.few.alike, &node.set)?;
-        let points = screened.starts.iter();
-        let mut probes: Vec<(&[f64], Vec<f64>)> = points
-            .map(|point| (&point.x[..], point.values.clone()))
-            .collect();
-        // A descent that can leave it out does no worse than the node.
-        if let Some(first) = screened.starts.first() {
-            probes.push((&node.model.x, amendment.faint(&first.values)));
-        }
-        let mut forms: Vec<Vec<f64>> = Vec::new();
-        for (_, probe) in &probes {
-            let form = amendment.form_at(probe);
-            if !forms.contains(&form) {
-                forms.push(form);
-            }
-        }
-        let trials = forms.into_par_iter().map(|form| {
-            let of_form = probes
-                .iter()
-                .filter(|(_, probe)| amendment.form_at(probe) == form);
-            let started = of_form.filter_map(|(x, probe)| {
-                Some((start(problem, x, amendment, probe)?, probe.clone()))
-            });
-            let (starts, mut values): (Vec<Start>, Vec<Vec<f64>>) = started.unzip();
-            let Some(rough) = self.fitter.roughly(&starts)? else {
-                return Ok(None);
-            };
-            let values = values.swap_remove(rough.start);
-            let Some(with) = possible(amendment.added(&node.model.problem, &values))? else {
-                return Ok(None);
-            };
-            let mut set = node.set.clone();
-            set.push(Amended {
-                amendment: amendment.clone(),
-                values,
-            });
-            Ok(Some(Trial {
-                deviance: rough.deviance,
-                set,
-                start: (with, rough.x),
-            }))
-        });
-        let trials = trials.collect::<Result<Vec<_>, Error>>()?;
-        let mut trials: Vec<Trial> = trials.into_iter().flatten().collect();
-        trials.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
-        trials.truncate(FORMS);
-        Ok(trials)
     }
 }
 
@@ -372,16 +305,6 @@ fn add(nodes: &mut Vec<Hypothesis>, set: Hypothesis) {
     }
 }
 
-fn is_at_noise(set: &Hypothesis) -> bool {
-    Fitter::is_at_noise(&set.model)
-}
-
-/// The one of two fits of a set that makes the recordings likelier.
-fn likelier(one: Option<Hypothesis>, other: Option<Hypothesis>) -> Option<Hypothesis> {
-    let both = one.into_iter().chain(other);
-    both.min_by(|a, b| a.model.deviance.total_cmp(&b.model.deviance))
-}
-
 /// The same amendments in the machine as it was given: without them its parameters may have been led far astray.
 fn as_given((problem, x): &Start, own: usize) -> Start {
     let mut x = x.clone();
@@ -397,25 +320,6 @@ struct Beside {
     lowest: Vec<Hypothesis>,
 }
 
-/// A set that was fitted roughly.
-struct Trial {
-    set: Vec<Amended>,
-    start: Start,
-    /// Twice the negative logarithm of the likelihood there.
-    deviance: f64,
-}
-
-impl Trial {
-    fn words(&self) -> String {
-        let labels: Vec<String> = self.set.iter().map(|one| one.amendment.label()).collect();
-        match labels.split_last() {
-            Some((last, [])) => last.clone(),
-            Some((last, others)) => format!("{last} beside {}", others.join(" and ")),
-            None => String::new(),
-        }
-    }
-}
-
 fn words(node: &Hypothesis, what: &str) -> String {
     match node.set.is_empty() {
         true => what.to_owned(),
@@ -427,6 +331,7 @@ fn words(node: &Hypothesis, what: &str) -> String {
 mod tests {
     use super::*;
     use crate::fixture::{effort, problem};
+    use crate::hypothesis::Amended;
     use calibrate::Problem;
 
     fn amendments(problem: &Problem) -> [Amendment; 3] {
