@@ -36,6 +36,17 @@ pub(crate) struct CylinderAt<'a, S> {
     pub centres: Option<[[S; 2]; 2]>,
 }
 
+/// Which chamber, and the distances from its piston to its cover, m: at the dead centre, and now.
+#[derive(Clone, Copy)]
+struct ChamberPlace<S> {
+    end: End,
+    dead: S,
+    distance: S,
+}
+
+/// What is found of a chamber: its gas; and it as effects see it, where any act on the gas.
+type Found<'f, S> = (&'f mut GasState<S>, &'f mut Option<ChamberAt<S>>);
+
 impl<S: Scalar> CylinderAt<'_, S> {
     /// Finds the gas of the throw (MODEL.md, sections 3 and 6), and the effects on the piston, in place.
     #[inline(always)]
@@ -47,15 +58,23 @@ impl<S: Scalar> CylinderAt<'_, S> {
         let to_head = cylinder.head_clearance + reach - motion.crosshead;
         let mut seen = [None, None];
         let [head, crank] = &mut seen;
-        let dead = cylinder.head_clearance;
-        self.chamber::<PLAIN>(End::Head, dead, to_head, &mut gas.head_end, head);
+        let place = ChamberPlace {
+            end: End::Head,
+            dead: cylinder.head_clearance,
+            distance: to_head,
+        };
+        self.chamber::<PLAIN>(place, (&mut gas.head_end, head));
         gas.force = match &cylinder.crank_end {
             None => (cylinder.back - gas.head_end.pressure) * face,
             Some(end) => {
                 let to_cover =
                     end.clearance + motion.crosshead - (throw.rod.length - throw.crank_radius);
-                let dead = end.clearance;
-                self.chamber::<PLAIN>(End::Crank, dead, to_cover, &mut gas.crank_end, crank);
+                let place = ChamberPlace {
+                    end: End::Crank,
+                    dead: end.clearance,
+                    distance: to_cover,
+                };
+                self.chamber::<PLAIN>(place, (&mut gas.crank_end, crank));
                 let rod = area(end.rod_radius);
                 let back = cylinder.back * rod - gas.head_end.pressure * face;
                 gas.crank_end.pressure.mul_add(face - rod, back)
@@ -98,47 +117,29 @@ impl<S: Scalar> CylinderAt<'_, S> {
         };
     }
 
-    /// Finds the chamber at one end with its piston `distance` from the cover, `dead` at the dead centre; and as effects see it,
-    /// where any act on the gas.
     #[inline(always)]
-    fn chamber<const PLAIN: bool>(
-        &self,
-        end: End,
-        dead: S,
-        distance: S,
-        state: &mut GasState<S>,
-        seen: &mut Option<ChamberAt<S>>,
-    ) {
+    fn chamber<const PLAIN: bool>(&self, place: ChamberPlace<S>, found: Found<S>) {
         match PLAIN {
-            true => self.chamber_here(end, dead, distance, state, seen),
-            false => self.chamber_apart(end, dead, distance, state, seen),
+            true => self.chamber_here(place, found),
+            false => self.chamber_apart(place, found),
         }
     }
 
     #[inline(never)]
-    fn chamber_apart(
-        &self,
-        end: End,
-        dead: S,
-        distance: S,
-        state: &mut GasState<S>,
-        seen: &mut Option<ChamberAt<S>>,
-    ) {
+    fn chamber_apart(&self, place: ChamberPlace<S>, found: Found<S>) {
         S::vectorised(
             #[inline(always)]
-            || self.chamber_here(end, dead, distance, state, seen),
+            || self.chamber_here(place, found),
         )
     }
 
     #[inline(always)]
-    fn chamber_here(
-        &self,
-        end: End,
-        dead: S,
-        distance: S,
-        state: &mut GasState<S>,
-        as_seen: &mut Option<ChamberAt<S>>,
-    ) {
+    fn chamber_here(&self, place: ChamberPlace<S>, (state, as_seen): Found<S>) {
+        let ChamberPlace {
+            end,
+            dead,
+            distance,
+        } = place;
         let (throw, cylinder) = (self.throw, &self.throw.cylinder);
         let (expanding, mode) = match end {
             End::Head => (self.mode.outward, &self.mode.head_end),
