@@ -237,20 +237,20 @@ impl<'a> Matrix<'a> {
     /// All of it as a page of Markdown.
     pub fn markdown(&self) -> String {
         let mut page = String::new();
-        self.tell_figures(&mut page);
-        self.tell_confusion(&mut page);
-        self.tell_cases(&mut page);
+        self.write_figures(&mut page);
+        self.write_confusion(&mut page);
+        self.write_cases(&mut page);
         page
     }
 
     /// The figures alone.
     pub fn summary(&self) -> String {
         let mut page = String::new();
-        self.tell_figures(&mut page);
+        self.write_figures(&mut page);
         page
     }
 
-    fn tell_figures(&self, page: &mut String) {
+    fn write_figures(&self, page: &mut String) {
         let mut line = |text: String| page.push_str(&(text + "\n"));
         let failed = match self.failed() {
             0 => String::new(),
@@ -289,7 +289,7 @@ impl<'a> Matrix<'a> {
         ));
     }
 
-    fn tell_confusion(&self, page: &mut String) {
+    fn write_confusion(&self, page: &mut String) {
         page.push_str("\n| hidden | named first | gap | explained | held out | explained |\n");
         page.push_str("|---|---|---|---|---|---|\n");
         for (hidden, row) in self.confusion() {
@@ -321,7 +321,7 @@ impl<'a> Matrix<'a> {
         page.push_str("\nGaps are medians, in standard deviations of the noise.\n");
     }
 
-    fn tell_cases(&self, page: &mut String) {
+    fn write_cases(&self, page: &mut String) {
         page.push_str(
             "\n| case | machine | hidden | noise | size | gap | explained | held out | explained | \
              verdict | named | rivals | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",

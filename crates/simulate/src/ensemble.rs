@@ -299,7 +299,7 @@ fn observe<L: Lanes<W>, const W: usize>(
         {
             step.extend(machines);
             step.lane(lane, true, plain);
-            sampler.look(plain);
+            sampler.sample_step(plain);
         }
     }
 }

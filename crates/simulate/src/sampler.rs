@@ -313,7 +313,7 @@ impl<'a> Sampler<'a> {
         if self.pass(step.start + step.length, |i| step.to[i]) {
             step.extend(dynamics);
             self.face(dynamics.mode());
-            self.look(step);
+            self.sample_step(step);
         }
     }
 
@@ -326,10 +326,10 @@ impl<'a> Sampler<'a> {
     }
 
     /// Looks at a step, whose continuous extension is there, in the mode that is faced.
-    pub fn look(&mut self, step: &Step<f64>) {
+    pub fn sample_step(&mut self, step: &Step<f64>) {
         let here = [step.start, step.length];
         if self.period.is_some() {
-            return self.look_at_parts(step);
+            return self.sample_parts(step);
         }
         let within = self.instants.within(self.seen, step.start + step.length);
         if NODES < within && self.fit(step, here, false) {
@@ -349,7 +349,7 @@ impl<'a> Sampler<'a> {
     }
 
     /// Looks at a step of the period: where a polynomial leaves out too much, at its halves.
-    fn look_at_parts(&mut self, step: &Step<f64>) {
+    fn sample_parts(&mut self, step: &Step<f64>) {
         let mut waiting = vec![Part::WHOLE];
         while let Some(part) = waiting.pop() {
             let span = part.span([step.start, step.length]);

@@ -44,7 +44,7 @@ pub(super) struct Contents {
 
 impl Contents {
     /// Those of a file.
-    pub(super) fn of(file: &Hdf5File) -> Result<Self> {
+    pub(super) fn read(file: &Hdf5File) -> Result<Self> {
         let mut contents = Self {
             arrays: Vec::new(),
             stated: Vec::new(),
@@ -97,7 +97,7 @@ impl Contents {
 
     fn add_dataset(&mut self, dataset: Dataset, group: &str, path: String) -> Result<()> {
         let attributes = dataset.attributes();
-        let Some(number) = Number::of(dataset.dtype()) else {
+        let Some(number) = Number::from_datatype(dataset.dtype()) else {
             return Ok(());
         };
         if is_no_number(&attributes) {

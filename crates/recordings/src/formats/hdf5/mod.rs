@@ -46,7 +46,7 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     files::open(path).map_err(Error::io("open", path))?;
     let limits = OpenOptions::default().with_max_chunk_bytes(expansion::ALWAYS as usize);
     let file = Hdf5File::open_with_options(path, limits).map_err(|error| damaged(path, error))?;
-    let contents = Contents::of(&file).map_err(|error| damaged(path, error))?;
+    let contents = Contents::read(&file).map_err(|error| damaged(path, error))?;
     let root = common_group(&contents.arrays);
     // Each channel with its array, and its place there.
     let (mut all, mut places) = (Vec::new(), Vec::new());

@@ -21,7 +21,7 @@ pub(super) enum Number {
 
 impl Number {
     /// That of a type of HDF5; none of what is no real number of a common size.
-    pub(super) fn of(datatype: &Datatype) -> Option<Self> {
+    pub(super) fn from_datatype(datatype: &Datatype) -> Option<Self> {
         Some(match datatype {
             Datatype::FloatingPoint { size: 4, .. } => Self::F32,
             Datatype::FloatingPoint { size: 8, .. } => Self::F64,
@@ -47,7 +47,7 @@ pub(super) fn numbers(
     number: Number,
     selection: &SliceInfo,
 ) -> Result<Vec<f64>> {
-    fn of<T: H5Type + Copy>(
+    fn read_as<T: H5Type + Copy>(
         dataset: &Dataset,
         selection: &SliceInfo,
         real: impl Fn(T) -> f64,
@@ -56,15 +56,15 @@ pub(super) fn numbers(
         Ok(read.iter().map(|x| real(*x)).collect())
     }
     match number {
-        Number::I8 => of::<i8>(dataset, selection, f64::from),
-        Number::U8 => of::<u8>(dataset, selection, f64::from),
-        Number::I16 => of::<i16>(dataset, selection, f64::from),
-        Number::U16 => of::<u16>(dataset, selection, f64::from),
-        Number::I32 => of::<i32>(dataset, selection, f64::from),
-        Number::U32 => of::<u32>(dataset, selection, f64::from),
-        Number::I64 => of::<i64>(dataset, selection, |x| x as f64),
-        Number::U64 => of::<u64>(dataset, selection, |x| x as f64),
-        Number::F32 => of::<f32>(dataset, selection, f64::from),
-        Number::F64 => of::<f64>(dataset, selection, |x| x),
+        Number::I8 => read_as::<i8>(dataset, selection, f64::from),
+        Number::U8 => read_as::<u8>(dataset, selection, f64::from),
+        Number::I16 => read_as::<i16>(dataset, selection, f64::from),
+        Number::U16 => read_as::<u16>(dataset, selection, f64::from),
+        Number::I32 => read_as::<i32>(dataset, selection, f64::from),
+        Number::U32 => read_as::<u32>(dataset, selection, f64::from),
+        Number::I64 => read_as::<i64>(dataset, selection, |x| x as f64),
+        Number::U64 => read_as::<u64>(dataset, selection, |x| x as f64),
+        Number::F32 => read_as::<f32>(dataset, selection, f64::from),
+        Number::F64 => read_as::<f64>(dataset, selection, |x| x),
     }
 }
