@@ -65,7 +65,7 @@ pub struct Values {
     pub value: f64,
     /// What each part alone asks for; none where it does not show it.
     pub by_part: Vec<Option<Own>>,
-    /// Whether the parts agree; none where fewer than two show it.
+    /// Whether the parts agree; none where they add nothing to it.
     pub agreement: Option<Agreement>,
 }
 
@@ -83,7 +83,7 @@ pub struct Own {
 pub struct Agreement {
     /// By how much the sum of squares falls where each part has a value of its own, over the mean square that is left.
     pub chi_squared: f64,
-    /// Parts that show the value, less one.
+    /// Directions that this adds to those in which all can go together.
     pub degrees: usize,
     /// False where chance explains their differences once in a hundred or less.
     pub agree: bool,
@@ -204,7 +204,7 @@ fn values(model: &Model, items: usize) -> Result<Vec<Values>, Error> {
             path: parameter.path.clone(),
             value: parameter.value(x),
             by_part: steps.iter().map(|step| step.as_ref().map(own)).collect(),
-            agreement: regression.agreement(i, &steps),
+            agreement: regression.agreement(i),
         }
     };
     Ok(own.into_iter().map(of).collect())
@@ -243,6 +243,8 @@ struct Solution {
     variances: Vec<Option<f64>>,
     /// Sum of squares that is left.
     left: f64,
+    /// In how many directions a step changes anything.
+    rank: usize,
 }
 
 impl Regression {
@@ -262,16 +264,16 @@ impl Regression {
     }
 
     /// Whether the parts agree about column `which`.
-    fn agreement(&self, which: usize, steps: &[Option<Step>]) -> Option<Agreement> {
-        let degrees = steps.iter().flatten().count().checked_sub(1)?;
+    fn agreement(&self, which: usize) -> Option<Agreement> {
+        let alike = self.solved(&self.jacobian);
+        let apart = self.solved(&self.split(which));
+        let degrees = apart.rank.saturating_sub(alike.rank);
         if degrees == 0 {
             return None;
         }
-        let alike = self.solved(&self.jacobian).left;
-        let apart = self.solved(&self.split(which)).left;
-        let free = self.residuals.len().saturating_sub(self.jacobian.ncols());
-        let mean_square = (apart / free.max(1) as f64).max(1.0);
-        let chi_squared = ((alike - apart) / mean_square).max(0.0);
+        let free = self.residuals.len().saturating_sub(apart.rank);
+        let mean_square = (apart.left / free.max(1) as f64).max(1.0);
+        let chi_squared = ((alike.left - apart.left) / mean_square).max(0.0);
         Some(Agreement {
             chi_squared,
             degrees,
@@ -329,6 +331,7 @@ impl Regression {
                 .map(|i| identifiable(i).then(|| variances[i] * over(i) * over(i)))
                 .collect(),
             steps: DVector::from_fn(count, |i, _| steps[i] * over(i)),
+            rank: eigenvalues.iter().filter(|value| **value > FLAT).count(),
             left,
         }
     }
@@ -372,10 +375,9 @@ mod tests {
     #[test]
     fn what_parts_gain_by_differing_is_their_chi_squared() {
         let regression = regression();
-        let steps = regression.steps(1);
-        let agreement = regression.agreement(1, &steps).unwrap();
+        let agreement = regression.agreement(1).unwrap();
         // Together the step is (4 + 32)/(4 + 16) = 1.8, which leaves (−2 + 3.6)² + (−8 + 7.2)² = 3.2; apart nothing is left. The
-        // first column takes −6/14 and leaves 3 − 36/14; the mean square over four degrees is below 1, and counts as 1.
+        // first column takes −6/14 and leaves 3 − 36/14; the mean square over three degrees is below 1, and counts as 1.
         assert!((agreement.chi_squared - 3.2).abs() < 1e-9, "{agreement:?}");
         assert_eq!((agreement.degrees, agreement.agree), (1, true));
     }
@@ -389,7 +391,28 @@ mod tests {
         };
         let steps = regression.steps(1);
         assert!(steps[0].is_none() && steps[1].is_some());
-        assert!(regression.agreement(1, &steps).is_none());
+        assert!(regression.agreement(1).is_none());
+    }
+
+    #[test]
+    fn what_no_part_shows_of_two_values_each_by_itself_counts_as_one_disagreement() {
+        // In each of three parts the two values act alike, by different shares: together they have two directions, apart three.
+        let regression = Regression {
+            jacobian: DMatrix::from_row_slice(
+                6,
+                2,
+                &[1.0, 1.0, 0.0, 0.0, 1.0, 2.0, 0.0, 0.0, 1.0, 3.0, 0.0, 0.0],
+            ),
+            residuals: DVector::from_vec(vec![4.0, 0.0, -8.0, 0.0, 4.0, 0.0]),
+            parts: vec![0..2, 2..4, 4..6],
+        };
+        for which in [0, 1] {
+            assert!(regression.steps(which).iter().all(Option::is_none));
+            // (1, −2, 1) is at right angles to both columns: all of 4² + 8² + 4² = 96 is left together, nothing apart.
+            let agreement = regression.agreement(which).unwrap();
+            assert!((agreement.chi_squared - 96.0).abs() < 1e-9, "{agreement:?}");
+            assert_eq!((agreement.degrees, agreement.agree), (1, false));
+        }
     }
 
     #[test]

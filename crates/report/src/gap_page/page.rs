@@ -7,7 +7,7 @@ use crate::calibration_page::verdict::size;
 use crate::calibration_page::{waveforms, words};
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use askama::Template;
-use gap::parts::{Agreement, Part, Values};
+use gap::parts::{Part, Values};
 use gap::results::{Bounded, Effect};
 use gap::scaling::Exponent;
 use gap::{ByPart, Correction, Results, Scaling, Step, Verdict};
@@ -250,8 +250,8 @@ impl View<'_> {
         parts::together(values)
     }
 
-    fn agreement(values: &Values, found: &Agreement) -> String {
-        parts::agreement(values, found)
+    fn agreements(all: &[Values]) -> Vec<String> {
+        parts::agreements(all)
     }
 
     fn has_rivals(effect: &Effect) -> bool {

@@ -63,16 +63,34 @@ pub(super) fn together(values: &Values) -> String {
     text::number(factor * values.value, 4)
 }
 
-/// Whether the rows agree, in a sentence.
-pub(super) fn agreement(values: &Values, agreement: &Agreement) -> String {
+/// Whether the rows agree, in sentences: one for values that can stand for each other, about which they say the same.
+pub(super) fn agreements(all: &[Values]) -> Vec<String> {
+    let mut found: Vec<(String, Vec<String>)> = Vec::new();
+    for values in all {
+        let Some(agreement) = &values.agreement else {
+            continue;
+        };
+        let sentence = agreement_of_rows(agreement);
+        match found.iter_mut().find(|(known, _)| *known == sentence) {
+            Some((_, names)) => names.push(name(values)),
+            None => found.push((sentence, vec![name(values)])),
+        }
+    }
+    let sentences = found.into_iter();
+    sentences
+        .map(|(sentence, names)| format!("{}: {sentence}", names.join(", ")))
+        .collect()
+}
+
+fn agreement_of_rows(agreement: &Agreement) -> String {
     let chi_squared = text::number(agreement.chi_squared, 3);
-    let found = format!("χ² {chi_squared}, {} degrees of freedom", agreement.degrees);
+    let degrees = text::counted(agreement.degrees, "degree");
+    let found = format!("χ² {chi_squared}, {degrees} of freedom");
     match agreement.agree {
-        true => format!("{}: the rows agree ({found}).", name(values)),
+        true => format!("the rows agree ({found})."),
         false => format!(
-            "{}: the rows differ by more than chance ({found}). The law of the effect is not quite right, it is not the same in all \
-             runs and ends, or something else acts as well.",
-            name(values)
+            "the rows differ by more than chance ({found}). The law of the effect is not quite right, it is not the same in all runs and \
+             ends, or something else acts as well."
         ),
     }
 }
@@ -121,6 +139,32 @@ mod tests {
             by_part: vec![own],
             agreement: None,
         }
+    }
+
+    #[test]
+    fn values_that_can_stand_for_each_other_have_one_sentence() {
+        let with = |path: &str, chi_squared: f64, degrees: usize| Values {
+            agreement: Some(Agreement {
+                chi_squared,
+                degrees,
+                agree: chi_squared < 5.0,
+            }),
+            ..values(path, None)
+        };
+        let all = [
+            with("effects.0.thermal_clearance.change", 72.1, 11),
+            with("effects.0.thermal_clearance.exponent", 72.1, 11),
+            values("effects.0.thermal_clearance.at_speed", None),
+            with("effects.1.sensor_gain.error", 0.5, 1),
+        ];
+        let [first, second] = &agreements(&all)[..] else {
+            panic!("two sentences");
+        };
+        assert!(first.starts_with("change, exponent: the rows differ by more than chance (χ² 72.1, 11\u{a0}degrees of freedom)."));
+        assert_eq!(
+            second,
+            "error of effect 2: the rows agree (χ² 0.5, 1\u{a0}degree of freedom)."
+        );
     }
 
     #[test]
