@@ -7,11 +7,11 @@ use calibrate::likelihood::Likelihood;
 
 /// What an explanation may cost before nothing new is begun, in steps of the integrator for each
 /// throw. A step of two joints takes some 4 µs.
-const BUDGET: u64 = 200_000_000;
+const BUDGET: u64 = 300_000_000;
 /// The most for a calibration.
-pub(crate) const FIRST_SEARCH: u64 = BUDGET / 32;
+pub(crate) const FIRST_SEARCH: u64 = BUDGET / 48;
 /// The most for a descent.
-pub(crate) const MOST_OF_A_DESCENT: u64 = BUDGET / 32;
+pub(crate) const MOST_OF_A_DESCENT: u64 = BUDGET / 48;
 
 /// Which runs a model is fitted to, and how long it may take.
 #[derive(Clone, Debug)]

@@ -6,14 +6,17 @@ use std::sync::LazyLock;
 
 const TAPS: usize = 2 * HALF_WIDTH;
 
-/// Sums that are added up side by side; divides the taps.
-const LANES: usize = 6;
+/// Sums that are added up side by side: a power of two, which fills registers.
+const LANES: usize = 8;
+
+/// Weights of a row, of which those beyond the taps are 0.
+const PADDED: usize = TAPS.next_multiple_of(LANES);
 
 /// Rows per sample interval. Weights between two rows are interpolated linearly, which errs by
 /// less than 2e-6 of the largest weight.
 const ROWS: usize = 512;
 
-type Row = [f64; TAPS];
+type Row = [f64; PADDED];
 
 /// Weights of the neighbours for each fraction of a sample interval; each row adds up to 1, so
 /// that a constant passes unchanged.
@@ -21,10 +24,10 @@ static WEIGHTS: LazyLock<Vec<Row>> = LazyLock::new(|| (0..=ROWS).map(row).collec
 
 fn row(index: usize) -> Row {
     let fraction = index as f64 / ROWS as f64;
-    let row: Row =
+    let taps: [f64; TAPS] =
         std::array::from_fn(|t| kaiser::low_pass(t as f64 + 1.0 - HALF_WIDTH as f64 - fraction));
-    let sum: f64 = row.iter().sum();
-    row.map(|w| w / sum)
+    let sum: f64 = taps.iter().sum();
+    std::array::from_fn(|t| taps.get(t).map_or(0.0, |w| w / sum))
 }
 
 /// The values of `x` at fractional sample indices.
@@ -38,9 +41,10 @@ pub(crate) fn interpolate(x: &[f64], positions: impl Iterator<Item = f64>) -> Ve
     f64::vectorised(
         #[inline(always)]
         || {
-            values
-                .iter_mut()
-                .for_each(|value| *value = at(x, *value, weights))
+            // A loop, as `for_each` is a function of its own, which would not get the instructions.
+            for value in &mut values {
+                *value = at(x, *value, weights);
+            }
         },
     );
     values
@@ -67,7 +71,7 @@ fn at(x: &[f64], position: f64, weights: &[Row]) -> f64 {
     };
     // A few sums side by side: one alone would wait for each addition. Those by two rows, and then between them.
     let mut sums = [[0.0; LANES]; 2];
-    for t in (0..TAPS).step_by(LANES) {
+    for t in (0..PADDED).step_by(LANES) {
         for lane in 0..LANES {
             sums[0][lane] += neighbours[t + lane] * low[t + lane];
             sums[1][lane] += neighbours[t + lane] * high[t + lane];
