@@ -2,20 +2,20 @@
 
 use crate::amendment::Amendment;
 use crate::criteria::{EXPLAINED, Verdict, explains, verdict};
-use crate::effort::Effort;
 use crate::error::Error;
 use crate::finding::{Correction, Found, Tried};
+use crate::fitter::effort::Effort;
 use crate::fitter::{Fitter, Watch};
 use crate::force::empirical_force;
+use crate::force::missing_force::MissingForce;
 use crate::gas::{has_joints, pressures};
-use crate::hypothesis::{Amended, Hypothesis, added};
-use crate::judgement::{Forms, Judgement, judged};
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
-use crate::missing_force::MissingForce;
 use crate::model::Model;
-use crate::next_recording::next_recording;
 use crate::recorded::is_of_pressures;
+use crate::results::next_recording::next_recording;
+use crate::search::hypothesis::{Amended, Hypothesis, added};
+use crate::search::judgement::{Forms, Judgement, judged};
 use crate::steps::{StepModel, steps};
 use calibrate::Problem;
 use calibrate::fit::{Estimate, Fit};

@@ -1,6 +1,6 @@
 //! Effects that were tried and found, and values of the data sheet that were wrong.
 
-use crate::candidate::Candidate;
+use crate::amendment::candidate::Candidate;
 use crate::criteria::Evidence;
 use crate::model::Model;
 use calibrate::Problem;

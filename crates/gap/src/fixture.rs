@@ -1,8 +1,8 @@
 //! A problem whose recordings are simulated here, for tests.
 
-use crate::effort::Effort;
 use crate::fitter::Fitter;
-use crate::journal::Journal;
+use crate::fitter::effort::Effort;
+use crate::fitter::journal::Journal;
 use calibrate::observation::Observed;
 use calibrate::prediction::predict;
 use calibrate::{CrankMotion, Observation, Parameter, Problem};

@@ -1,11 +1,11 @@
 //! An explanation from a bundle to a folder: `gap.json`, `machine.yaml`, `simulated/`, `baseline/` and what
 //! pictures are drawn from.
 
-use crate::effort::Effort;
 use crate::error::Error;
 use crate::explain::{Explanation, Stage, explain};
 use crate::fitter::Watch;
-use crate::journal::Journal;
+use crate::fitter::effort::Effort;
+use crate::fitter::journal::Journal;
 use crate::mains_hum::remove_hum;
 use crate::recorded::Recorded;
 use crate::results::{RESULTS, Results};

@@ -1,6 +1,6 @@
 //! Errors of the measuring chain, not of the machine: reported as effects like any other.
 
-use crate::candidate::Candidate;
+use crate::amendment::candidate::Candidate;
 use crate::criteria::{Evidence, NAMED, evidence, left, probability};
 use crate::error::Error;
 use crate::finding::{Found, Tried};
@@ -114,7 +114,7 @@ mod tests {
     use serde_json::json;
 
     /// The probability of an offset in a problem in which it is free, and was found to be 1° with little doubt.
-    fn named(mut problem: Problem, effort: &crate::effort::Effort) -> Option<f64> {
+    fn named(mut problem: Problem, effort: &crate::fitter::effort::Effort) -> Option<f64> {
         let zero = Parameter::named(&problem.tree, &[], "crank_angle_offset", None).unwrap();
         problem.parameters.push(zero);
         let offset = problem.parameters[1].clone();

@@ -1,7 +1,7 @@
 //! A machine with what was fitted of it, and how far it is from the recordings.
 
-use crate::effort::Effort;
 use crate::error::Error;
+use crate::fitter::effort::Effort;
 use crate::recorded::is_pressure;
 use calibrate::Problem;
 use calibrate::likelihood::{Likelihood, misfit};

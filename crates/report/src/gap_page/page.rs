@@ -7,9 +7,9 @@ use crate::calibration_page::verdict::size;
 use crate::calibration_page::{waveforms, words};
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use askama::Template;
-use gap::parts::{Part, Values};
+use gap::results::parts::{Part, Values};
+use gap::results::scaling::Exponent;
 use gap::results::{Bounded, Effect};
-use gap::scaling::Exponent;
 use gap::{ByPart, Correction, Results, Scaling, Step, Verdict};
 
 #[derive(Template)]

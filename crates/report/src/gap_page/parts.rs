@@ -3,7 +3,7 @@
 use super::units::usual;
 use crate::calibration_page::words;
 use gap::ByPart;
-use gap::parts::{Agreement, Own, Part, Values};
+use gap::results::parts::{Agreement, Own, Part, Values};
 use input::effects::at_path;
 
 /// Digits of a standard error.

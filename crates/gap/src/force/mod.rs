@@ -10,15 +10,19 @@
 //! 3. The terms that are stable are fitted in full, and the library is regressed again at that fit, until the
 //!    same terms come out.
 
-use crate::candidate::Candidate;
+pub(crate) mod linearised;
+pub(crate) mod missing_force;
+pub(crate) mod stability_selection;
+
+use crate::amendment::candidate::Candidate;
+use crate::amendment::places::throws;
 use crate::criteria::evidence;
 use crate::error::Error;
 use crate::finding::{Tried, effects};
 use crate::fitter::Fitter;
-use crate::linearised::{Linearised, groups};
-use crate::missing_force::{MissingForce, missing_force};
+use crate::force::linearised::{Linearised, groups};
+use crate::force::missing_force::{MissingForce, missing_force};
 use crate::model::Model;
-use crate::places::throws;
 use calibrate::Problem;
 use input::effects::{Proposal, proposed};
 

@@ -5,11 +5,15 @@
 //! the catalogue is quite a machine's: where a descent allows less than the law is off by, the likelihood falls again.
 //! The allowance with which it is greatest is the size of the model's discrepancy (Kennedy and O'Hagan 2001).
 
-use crate::conditions::{conditions_of, most_different, of_one_clearance};
+pub(crate) mod conditions;
+pub mod effort;
+pub mod journal;
+
 use crate::criteria::NOISE;
-use crate::effort::{Effort, FIRST_SEARCH, MOST_OF_A_DESCENT};
 use crate::error::{Error, possible};
-use crate::journal::Finished;
+use crate::fitter::conditions::{conditions_of, most_different, of_one_clearance};
+use crate::fitter::effort::{Effort, FIRST_SEARCH, MOST_OF_A_DESCENT};
+use crate::fitter::journal::Finished;
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
 use calibrate::Problem;

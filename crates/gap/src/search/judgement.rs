@@ -6,8 +6,8 @@ use crate::criteria::{NAMED, evidence, left, probability};
 use crate::error::Error;
 use crate::finding::{Found, Tried};
 use crate::fitter::Fitter;
-use crate::hypothesis::{Amended, Hypothesis, of_kinds};
 use crate::recorded::is_of_pressures;
+use crate::search::hypothesis::{Amended, Hypothesis, of_kinds};
 use crate::search::{MOST, Search};
 use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
@@ -262,7 +262,7 @@ fn shows_in_each(before: &Hypothesis, after: &Hypothesis) -> Result<bool, Error>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::candidate::Candidate;
+    use crate::amendment::candidate::Candidate;
     use crate::fixture::{effort, fitter, problem, problem_of};
     use serde_json::json;
 

@@ -3,8 +3,8 @@
 use crate::amendment::Amendment;
 use crate::error::{Error, possible};
 use crate::fitter::{Few, Fitter, Start};
-use crate::hypothesis::{Amended, Hypothesis, added, start};
-use crate::screen::{FORMS, Point, Screened};
+use crate::search::hypothesis::{Amended, Hypothesis, added, start};
+use crate::search::screen::{FORMS, Point, Screened};
 use calibrate::Problem;
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Which runs are fitted to, and what an explanation may cost: one budget.
 
 use crate::error::Error;
-use crate::journal::Journal;
+use crate::fitter::journal::Journal;
 use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
 

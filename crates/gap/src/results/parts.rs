@@ -10,7 +10,7 @@
 //! The standard error of s_p is that of this regression, times what the part is left with where that is more than noise. How much the
 //! sum of squares falls by letting the parts differ, over the mean square that is left, is distributed as χ² where they agree.
 
-use crate::candidate::Candidate;
+use crate::amendment::candidate::Candidate;
 use crate::error::Error;
 use crate::explain::Explanation;
 use crate::finding::{Found, effects};

@@ -1,8 +1,8 @@
 //! What a model leaves, as a linear function of the coefficients of an empirical force.
 
-use crate::candidate::Candidate;
+use crate::amendment::candidate::Candidate;
 use crate::error::Error;
-use crate::stability_selection::Regression;
+use crate::force::stability_selection::Regression;
 use calibrate::LOOSE;
 use calibrate::Problem;
 use calibrate::likelihood::Likelihood;

@@ -1,9 +1,9 @@
 //! What must be known to judge an explanation, in sentences.
 
-use crate::candidate::Candidate;
+use crate::amendment::candidate::Candidate;
 use crate::criteria::{NAMED, Verdict};
-use crate::effort::Effort;
 use crate::explain::Explanation;
+use crate::fitter::effort::Effort;
 use crate::recorded::Recorded;
 use calibrate::fit::Estimate;
 use calibrate::indicator::Alternative;

@@ -6,8 +6,8 @@
 //! Talwalkar 2016).
 
 use crate::error::Error;
+use crate::fitter::journal::Finished;
 use crate::fitter::{Fitter, Start};
-use crate::journal::Finished;
 use calibrate::Problem;
 use calibrate::cloud_descent::KEPT;
 use calibrate::energies::Energies;
@@ -125,10 +125,10 @@ fn ranges(problem: &Problem, own: usize) -> Vec<(usize, [f64; 2])> {
 mod tests {
     use super::*;
     use crate::amendment::Amendment;
-    use crate::effort::Effort;
+    use crate::fitter::effort::Effort;
+    use crate::fitter::journal::Journal;
     use crate::fixture::{effort, fitter, problem_of};
-    use crate::hypothesis::start;
-    use crate::journal::Journal;
+    use crate::search::hypothesis::start;
     use serde_json::json;
 
     /// The sets of one amendment of these kinds, from their usual values.

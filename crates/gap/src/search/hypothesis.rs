@@ -272,7 +272,7 @@ fn firsts(problem: &Problem, set: &[Amended], own: usize) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::candidate::Candidate;
+    use crate::amendment::candidate::Candidate;
     use crate::fixture::{effort, problem};
 
     #[test]

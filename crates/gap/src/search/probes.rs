@@ -1,7 +1,7 @@
 //! Values at which a candidate is tried before it is fitted.
 
-use crate::candidate::Candidate;
-use crate::recorded_values::recorded_values;
+use crate::amendment::candidate::Candidate;
+use crate::search::recorded_values::recorded_values;
 use calibrate::Problem;
 use std::f64::consts::TAU;
 

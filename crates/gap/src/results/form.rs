@@ -1,6 +1,6 @@
 //! What is known of the form of an effect's law, in words.
 
-use crate::candidate::Candidate;
+use crate::amendment::candidate::Candidate;
 use input::effects::Parameter;
 
 /// Significant digits of a value in words.

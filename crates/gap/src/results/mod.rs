@@ -3,21 +3,30 @@
 //! Values are SI, misfits are in standard deviations of the noise: 1 is noise alone. The same inputs give
 //! the same bytes.
 
-use crate::candidate::Candidate;
+pub(crate) mod expression;
+pub(crate) mod form;
+pub(crate) mod next_recording;
+pub(crate) mod notes;
+pub mod parts;
+pub mod residual_map;
+pub mod scaling;
+pub(crate) mod summary;
+
+use crate::amendment::candidate::Candidate;
 use crate::criteria::{Evidence, Verdict};
-use crate::effort::Effort;
 use crate::error::Error;
 use crate::explain::Explanation;
-use crate::expression::expression;
 use crate::finding::{Correction, Found, Tried, first_item};
-use crate::form::form;
-use crate::missing_force::MissingForce;
+use crate::fitter::effort::Effort;
+use crate::force::missing_force::MissingForce;
 use crate::model::Model;
-use crate::notes::{closing, notes};
-use crate::parts::ByPart;
 use crate::recorded::Recorded;
-use crate::residual_map::{Place, ResidualMap, band_names, places, residual_maps};
-use crate::scaling::{Scaling, scaling};
+use crate::results::expression::expression;
+use crate::results::form::form;
+use crate::results::notes::{closing, notes};
+use crate::results::parts::ByPart;
+use crate::results::residual_map::{Place, ResidualMap, band_names, places, residual_maps};
+use crate::results::scaling::{Scaling, scaling};
 use crate::steps::{Step, StepModel};
 use calibrate::ShutValve;
 use calibrate::fit;

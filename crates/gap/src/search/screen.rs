@@ -13,12 +13,12 @@
 
 use crate::amendment::Amendment;
 use crate::error::Error;
+use crate::fitter::journal::Finished;
 use crate::fitter::{Fitter, Start};
-use crate::hypothesis::start;
-use crate::journal::Finished;
 use crate::model::Model;
-use crate::projector::Projector;
 use crate::recorded::is_of_pressures;
+use crate::search::hypothesis::start;
+use crate::search::projector::Projector;
 use calibrate::Problem;
 use calibrate::energies::Energies;
 use calibrate::likelihood::Likelihood;

@@ -5,16 +5,25 @@
 //! neither may explain as much by itself as a third that imitates both, so that several nodes are looked at further at the
 //! same time. A set of which one amendment is exchanged for another is reached from it, and from the set without it.
 
+pub mod far_starts;
+pub(crate) mod hypothesis;
+pub(crate) mod judgement;
+pub(crate) mod probes;
+pub(crate) mod projector;
+pub(crate) mod recorded_values;
+pub(crate) mod screen;
+pub(crate) mod trial;
+
 use crate::amendment::Amendment;
 use crate::criteria::{explains, left};
 use crate::error::{Error, possible};
-use crate::far_starts::far_starts;
 use crate::fitter::{Few, Fitter, Start};
-use crate::hypothesis::{Hypothesis, added, of_kinds};
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
-use crate::screen::{Screened, screen};
-use crate::trial::{Trial, is_at_noise, likelier, settled, trials};
+use crate::search::far_starts::far_starts;
+use crate::search::hypothesis::{Hypothesis, added, of_kinds};
+use crate::search::screen::{Screened, screen};
+use crate::search::trial::{Trial, is_at_noise, likelier, settled, trials};
 use calibrate::energies::TIMING;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -331,7 +340,7 @@ fn words(node: &Hypothesis, what: &str) -> String {
 mod tests {
     use super::*;
     use crate::fixture::{effort, problem};
-    use crate::hypothesis::Amended;
+    use crate::search::hypothesis::Amended;
     use calibrate::Problem;
 
     fn amendments(problem: &Problem) -> [Amendment; 3] {

@@ -1,6 +1,9 @@
 //! What may be amended in a machine: an effect that it lacks, or a value of its data sheet that is wrong.
 
-use crate::candidate::Candidate;
+pub mod candidate;
+pub(crate) mod places;
+
+use crate::amendment::candidate::Candidate;
 use crate::error::Error;
 use crate::model::Model;
 use calibrate::data_sheet::{Doubt, doubts};

@@ -6,9 +6,9 @@
 //! ln residual = constant + a ln speed + b ln load + c ln clearance
 //! ```
 
-use crate::conditions::{Conditions, conditions_of, varied};
+use crate::fitter::conditions::{Conditions, conditions_of, varied};
 use crate::model::Model;
-use crate::residual_map::ResidualMap;
+use crate::results::residual_map::ResidualMap;
 use calibrate::Error;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};

@@ -1,11 +1,11 @@
 //! What may be missing: an effect of the catalogue at a place of the machine.
 
-use crate::error::Error;
-use crate::model::Model;
-use crate::places::{
+use crate::amendment::places::{
     BEARINGS, EITHER, MEASURE, PRESSURE, distinguishes_ends, has_crank_end, is_clear, places,
     recorded, throws, words,
 };
+use crate::error::Error;
+use crate::model::Model;
 use crate::recorded::{is_of_pressures, shows_pressure};
 use calibrate::Problem;
 use input::MachineFile;
