@@ -1,7 +1,7 @@
 //! Anti-aliased decimation by an integer factor.
 
 use crate::error::Error;
-use crate::kaiser::{self, HALF_WIDTH};
+use crate::kaiser::{self, HALF_WIDTH, LANES};
 use scalar::Scalar;
 
 /// Low-pass and decimation in one: a symmetric FIR filter evaluated only where an output is due.
@@ -18,9 +18,6 @@ pub struct Decimator {
     /// From one end to the other, which are alike.
     taps: Vec<f64>,
 }
-
-/// Sums that are added up side by side: one alone would wait for each addition.
-const LANES: usize = 8;
 
 impl Decimator {
     /// A decimator by `factor`; 1 passes its input through.

@@ -1,13 +1,10 @@
 //! Values between the samples, by windowed-sinc interpolation.
 
-use crate::kaiser::{self, HALF_WIDTH};
+use crate::kaiser::{self, HALF_WIDTH, LANES};
 use scalar::Scalar;
 use std::sync::LazyLock;
 
 const TAPS: usize = 2 * HALF_WIDTH;
-
-/// Sums that are added up side by side: a power of two, which fills registers.
-const LANES: usize = 8;
 
 /// Weights of a row, of which those beyond the taps are 0.
 const PADDED: usize = TAPS.next_multiple_of(LANES);

@@ -16,6 +16,9 @@ pub(crate) const HALF_WIDTH: usize = 15;
 /// End of the pass band as a share of the slower side's Nyquist frequency.
 pub(crate) const PASS_BAND: f64 = 0.8;
 
+/// Weighted samples that are added up side by side: one sum alone would wait for each addition. A power of two fills registers.
+pub(crate) const LANES: usize = 8;
+
 /// Attenuation that the window is designed for, dB. At this attenuation and 0.4 of the Nyquist
 /// frequency as transition, Kaiser's formula asks for a half width of 14.3.
 const ATTENUATION_DB: f64 = 90.0;

@@ -23,7 +23,7 @@ use crate::recorded::is_of_pressures;
 use crate::search::far_starts::far_starts;
 use crate::search::hypothesis::{Hypothesis, added, of_kinds};
 use crate::search::screen::{Screened, screen};
-use crate::search::trial::{Trial, is_at_noise, likelier, settled, trials};
+use crate::search::trial::{Rank, Trial, is_at_noise, likelier, settled, trials};
 use calibrate::energies::TIMING;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -71,18 +71,24 @@ impl Search<'_> {
             if explains(&nodes[0].model) || !self.fitter.effort.goes_on() {
                 break;
             }
-            let beam = beam(&nothing.model, &nodes, &lowest, &expanded);
+            let beam = beam(&nodes, &lowest, &expanded);
             expanded.extend(beam.iter().map(Hypothesis::labels));
-            let beside = self.beside(&beam, &nothing.model)?;
+            let by = match lowest.is_empty() {
+                true => Rank::Likelihood,
+                false => Rank::Energies,
+            };
+            let beside = self.beside(&beam, by, &nothing.model)?;
             for set in beside.fitted {
                 add(&mut nodes, set);
             }
-            lowest = beside.lowest;
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            lowest = match leaves_little(&nothing.model, &nodes[0]) {
+                true => Vec::new(),
+                false => beside.lowest,
+            };
             let is_last = round + 1 == ROUNDS || !self.fitter.effort.goes_on();
-            let has_lower = !lowest.is_empty() && !leaves_little(&nothing.model, &nodes[0]);
             // What is looked at further is none of the nodes then.
-            if has_lower && !is_last {
+            if !lowest.is_empty() && !is_last {
                 continue;
             }
             for moved in [Self::varied, Self::exchanged] {
@@ -137,7 +143,7 @@ impl Search<'_> {
             others.extend(screened.map(|screened| (without.clone(), screened)));
         }
         let fitted = others.into_par_iter().map(|(without, screened)| {
-            let forms = trials(self.fitter, self.few, &without, &screened)?;
+            let forms = trials(self.fitter, self.few, &without, &screened, Rank::Likelihood)?;
             settled(self.fitter, &forms, own)
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
@@ -146,7 +152,7 @@ impl Search<'_> {
 
     /// The sets of these nodes with each of the most promising other amendments; `nothing` is the machine without any. Where none
     /// of them leaves little, they are fitted from far away, too.
-    fn beside(&self, beam: &[Hypothesis], nothing: &Model) -> Result<Beside, Error> {
+    fn beside(&self, beam: &[Hypothesis], by: Rank, nothing: &Model) -> Result<Beside, Error> {
         let alone = beam.iter().all(|node| node.set.is_empty());
         let so_far = beam.first().map_or(f64::NAN, |best| best.model.fitted);
         let mut of_each = Vec::new();
@@ -160,12 +166,12 @@ impl Search<'_> {
         let chosen = in_turn(beam, of_each, TRIED * beam.len());
         let rough = chosen.into_par_iter().map(|(node, screened)| {
             (self.fitter.say)(&words(node, "fitting roughly"), node.model.fitted);
-            trials(self.fitter, self.few, node, &screened)
+            trials(self.fitter, self.few, node, &screened, by)
         });
         let mut rough = rough.collect::<Result<Vec<_>, Error>>()?;
         rough.retain(|forms| !forms.is_empty());
         // What a freer law costs counts once it has been fitted.
-        rough.sort_by(|a, b| a[0].deviance.total_cmp(&b[0].deviance));
+        rough.sort_by(|a, b| a[0].left(by).total_cmp(&b[0].left(by)));
         let count = if alone { REFINED } else { REFINED_BESIDE };
         let mut fitted = self.refined(&rough[..count.min(rough.len())], so_far)?;
         let mut lowest = Vec::new();
@@ -248,18 +254,9 @@ fn leaves_little(nothing: &Model, set: &Hypothesis) -> bool {
     left(nothing, &set.model) < LITTLE
 }
 
-/// The nodes to look at further: the first of different kinds that were not. Where none that was fitted leaves little, what is
-/// left of them is the ringing in which each fit ended, and those whose energies are the lowest come first.
-fn beam(
-    nothing: &Model,
-    fitted: &[Hypothesis],
-    lowest: &[Hypothesis],
-    expanded: &[Vec<String>],
-) -> Vec<Hypothesis> {
-    let lowest = match fitted.first() {
-        Some(best) if leaves_little(nothing, best) => &[],
-        _ => lowest,
-    };
+/// The nodes to look at further: the first of different kinds that were not. Where none that was `fitted` leaves little, what is
+/// left of them is the ringing in which each fit ended, and those whose energies are the `lowest` come first.
+fn beam(fitted: &[Hypothesis], lowest: &[Hypothesis], expanded: &[Vec<String>]) -> Vec<Hypothesis> {
     let open = |node: &&Hypothesis| node.set.len() < MOST && !expanded.contains(&node.labels());
     let beam = of_kinds(lowest.iter().chain(fitted).filter(open)).into_iter();
     beam.take(WIDTH).cloned().collect()
@@ -364,20 +361,18 @@ mod tests {
     #[test]
     fn where_no_fit_leaves_little_those_of_low_energies_are_looked_at_further() {
         let problem = problem();
-        let [mut a, b, c] = amendments(&problem).map(|one| node(&problem, &one));
-        let nothing = Model::at(problem, &[], 0.0, &effort()).unwrap();
-        let fitted = |a: &Hypothesis| [a.clone(), b.clone()];
-        let labels = |fitted: &[Hypothesis], expanded: &[Vec<String>]| -> Vec<Vec<String>> {
-            let beam = beam(&nothing, fitted, std::slice::from_ref(&c), expanded);
+        let [a, b, c] = amendments(&problem).map(|one| node(&problem, &one));
+        let [of_a, of_b, of_c] = [&a, &b, &c].map(Hypothesis::labels);
+        let fitted = [a, b];
+        let labels = |lowest: &[Hypothesis], expanded: &[Vec<String>]| -> Vec<Vec<String>> {
+            let beam = beam(&fitted, lowest, expanded);
             beam.iter().map(Hypothesis::labels).collect()
         };
-        let [of_a, of_b, of_c] = [&a, &b, &c].map(|one| one.labels());
-        a.model.fitted = nothing.fitted;
-        assert_eq!(labels(&fitted(&a), &[]), [of_c.clone(), of_a.clone()]);
+        let lowest = std::slice::from_ref(&c);
+        assert_eq!(labels(lowest, &[]), [of_c.clone(), of_a.clone()]);
         let once = [of_c];
-        assert_eq!(labels(&fitted(&a), &once), [of_a.clone(), of_b.clone()]);
-        a.model.fitted = 1.0;
-        assert_eq!(labels(&fitted(&a), &[]), [of_a, of_b]);
+        assert_eq!(labels(lowest, &once), [of_a.clone(), of_b.clone()]);
+        assert_eq!(labels(&[], &[]), [of_a, of_b]);
     }
 
     #[test]

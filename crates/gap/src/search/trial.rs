@@ -13,10 +13,29 @@ pub(crate) struct Trial {
     pub set: Vec<Amended>,
     pub start: Start,
     /// Twice the negative logarithm of the likelihood there.
-    pub deviance: f64,
+    deviance: f64,
+    /// The sum of squares that energies left; infinite of pressures alone, which have none.
+    energies: f64,
+}
+
+/// What ranks sets that were fitted roughly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rank {
+    /// How likely they make the recordings.
+    Likelihood,
+    /// Energies alone: where descents end in wrong ringings, the likelihood there is that of the ringing.
+    Energies,
 }
 
 impl Trial {
+    /// What the set leaves, by this measure.
+    pub fn left(&self, by: Rank) -> f64 {
+        match by {
+            Rank::Likelihood => self.deviance,
+            Rank::Energies => self.energies,
+        }
+    }
+
     /// What was added beside what.
     pub fn words(&self) -> String {
         let labels: Vec<String> = self.set.iter().map(|one| one.amendment.label()).collect();
@@ -38,6 +57,7 @@ pub(crate) fn trials(
     few: &Few,
     node: &Hypothesis,
     screened: &Screened,
+    by: Rank,
 ) -> Result<Vec<Trial>, Error> {
     let amendment = &screened.amendment;
     let problem = added(&few.alike, &node.set)?;
@@ -53,7 +73,7 @@ pub(crate) fn trials(
     let trials = forms.map(|points| trial(fitter, node, (amendment, &points), &problem));
     let trials = trials.collect::<Result<Vec<_>, Error>>()?;
     let mut trials: Vec<Trial> = trials.into_iter().flatten().collect();
-    trials.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
+    trials.sort_by(|a, b| a.left(by).total_cmp(&b.left(by)));
     trials.truncate(FORMS);
     Ok(trials)
 }
@@ -84,6 +104,7 @@ fn trial(
     });
     Ok(Some(Trial {
         deviance: rough.deviance,
+        energies: rough.energies,
         set,
         start: (with, rough.x),
     }))
@@ -156,6 +177,7 @@ mod tests {
                 set: vec![Amended { amendment, values }],
                 start,
                 deviance: 0.0,
+                energies: 0.0,
             }
         };
         let fitted = |forms: &[&str]| {
