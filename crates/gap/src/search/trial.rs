@@ -160,6 +160,7 @@ pub(crate) fn is_at_noise(set: &Hypothesis) -> bool {
 mod tests {
     use super::*;
     use crate::fixture::{effort, fitter, problem, problem_of};
+    use crate::model::Model;
     use serde_json::json;
 
     #[test]
@@ -195,6 +196,42 @@ mod tests {
         // Nothing more is fitted after one that leaves noise.
         let first = fitted(&["sensor_gain", "extra_clearance"]);
         assert_eq!(first, (right, of_right));
+    }
+
+    #[test]
+    fn trials_are_ranked_by_what_is_asked_for() {
+        let hidden =
+            json!([{"sensor_gain": {"measure": "crosshead_acceleration", "error": "40 %"}}]);
+        let problem = problem_of(hidden);
+        let effort = effort();
+        let fitter = &fitter(&effort);
+        let few = Few {
+            alike: problem.clone(),
+            different: problem.clone(),
+        };
+        let model = Model::at(problem.clone(), &[0.0], 0.0, &effort).unwrap();
+        let node = Hypothesis::new(Vec::new(), model, 1);
+        let all = Amendment::all(&problem).unwrap();
+        let trial = |kind: &str, by: Rank| {
+            let amendment = all.iter().find(|one| one.kind() == kind).unwrap().clone();
+            let values = amendment.effect().unwrap().usual();
+            let starts = vec![Point {
+                x: vec![0.0],
+                values,
+            }];
+            let screened = Screened { amendment, starts };
+            let trials = trials(fitter, &few, &node, &screened, by).unwrap();
+            let left: Vec<f64> = trials.iter().map(|trial| trial.left(by)).collect();
+            assert!(
+                left.is_sorted() && left[0].is_finite(),
+                "{kind} {by:?} {left:?}"
+            );
+            left[0]
+        };
+        for by in [Rank::Likelihood, Rank::Energies] {
+            let [right, wrong] = ["sensor_gain", "ring_friction"].map(|kind| trial(kind, by));
+            assert!(right < wrong, "{by:?}: {right} {wrong}");
+        }
     }
 
     #[test]
