@@ -249,6 +249,7 @@ fn ordered<T>(scored: Vec<(T, Vec<f64>)>) -> Vec<T> {
 mod tests {
     use super::*;
     use crate::fixture::problem;
+    use calibrate::optimiser::LeastSquares;
 
     #[test]
     fn the_best_probe_of_each_form_is_left() {
@@ -274,6 +275,36 @@ mod tests {
             (0.1, other[1].clone()),
         ];
         assert_eq!(best, expected);
+    }
+
+    /// Twelve machines, more than fill a register, whose effects differ: some are of the gas, some of the joints.
+    #[test]
+    fn probes_side_by_side_leave_what_each_leaves_by_itself() {
+        let problem = problem();
+        let all = Amendment::all(&problem).unwrap();
+        let kinds = [
+            "ring_leakage",
+            "ring_friction",
+            "misalignment",
+            "squeeze_film",
+        ];
+        let effects = kinds.map(|kind| {
+            let one = all.iter().find(|one| one.kind() == kind).unwrap();
+            one.clone()
+        });
+        let machines: Vec<Start> = [0.0, 0.1, -0.2]
+            .iter()
+            .flat_map(|x| effects.iter().map(move |effect| (x, effect)))
+            .map(|(x, effect)| {
+                let usual = effect.effect().unwrap().usual();
+                start(&problem, &[*x], effect, &usual).unwrap()
+            })
+            .collect();
+        let together = Energies::new(&problem).residuals_of_machines(&machines);
+        let alone = machines
+            .iter()
+            .map(|(machine, x)| Energies::new(machine).residuals(x));
+        assert_eq!(together, alone.collect::<Vec<_>>());
     }
 
     #[test]
