@@ -249,7 +249,6 @@ fn ordered<T>(scored: Vec<(T, Vec<f64>)>) -> Vec<T> {
 mod tests {
     use super::*;
     use crate::fixture::problem;
-    use calibrate::optimiser::LeastSquares;
 
     #[test]
     fn the_best_probe_of_each_form_is_left() {
