@@ -6,7 +6,7 @@ use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
 
 /// What an explanation may cost before nothing new is begun, in steps of the integrator for each
-/// throw: ten minutes on two cores, as a step of two joints takes 2 to 4 µs.
+/// throw: at most ten minutes on two cores, as a step of two joints takes 2 to 4 µs.
 const BUDGET: u64 = 300_000_000;
 /// The most for a calibration.
 pub(crate) const FIRST_SEARCH: u64 = BUDGET / 48;
