@@ -10,6 +10,8 @@ use calibrate::likelihood::Likelihood;
 const BUDGET: u64 = 300_000_000;
 /// The most for a calibration.
 pub(crate) const FIRST_SEARCH: u64 = BUDGET / 48;
+/// What a round of searches far away costs together.
+pub(crate) const FAR_ROUND: u64 = BUDGET / 15;
 /// The most for a descent.
 pub(crate) const MOST_OF_A_DESCENT: u64 = BUDGET / 48;
 

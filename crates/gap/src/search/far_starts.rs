@@ -1,13 +1,14 @@
 //! Where descents may start far away from the machine as it was given.
 //!
 //! Descents from where an amendment was screened find no way from one ringing to another. Energies by band and sector have few
-//! minima, and within the whole ranges of what is unknown CMA-ES finds its way to a low one, which takes some hundred evaluations
-//! for each coordinate. So all sets are searched for a while, the better ones for longer (successive halving, Jamieson and
-//! Talwalkar 2016).
+//! minima where what is quieter than the noise of a revolution does not count, and within the whole ranges of what is unknown CMA-ES
+//! finds its way to a low one, which takes some hundred evaluations for each coordinate. So all sets are searched for a while, the
+//! better ones for longer: each round costs the same (successive halving, Jamieson and Talwalkar 2016).
 
 use crate::error::Error;
+use crate::fitter::Fitter;
+use crate::fitter::effort::FAR_ROUND;
 use crate::fitter::journal::Finished;
-use crate::fitter::{Fitter, Start};
 use calibrate::Problem;
 use calibrate::cloud_descent::KEPT;
 use calibrate::energies::Energies;
@@ -15,9 +16,20 @@ use calibrate::parameter::Parameter;
 use calibrate::prior::{DESIGN, Prior, WithPriors};
 use calibrate::region::{Region, SPREADS};
 use rayon::prelude::*;
+use std::ops::ControlFlow;
 
-/// Evaluations for each coordinate.
-const EACH: [u64; 3] = [25, 75, 200];
+/// Rounds of a search.
+const ROUNDS: u32 = 4;
+/// Share of its range within which a coordinate is followed that was searched before.
+const FOLLOWED: f64 = 0.25;
+
+/// A set, and from where it is searched.
+pub(crate) struct FarStart<'a> {
+    pub problem: &'a Problem,
+    pub x: Vec<f64>,
+    /// How many of the first coordinates were searched before.
+    pub followed: usize,
+}
 
 /// The starts that were searched longest, the most promising first: their indices, and where their searches have ended. The first
 /// `own` coordinates are the machine's.
@@ -26,11 +38,11 @@ const EACH: [u64; 3] = [25, 75, 200];
 /// [`Error::Stopped`].
 pub(crate) fn far_starts(
     fitter: &Fitter,
-    starts: &[&Start],
+    starts: &[FarStart],
     own: usize,
 ) -> Result<Vec<(usize, Vec<f64>)>, Error> {
     let effort = fitter.effort;
-    let problems = starts.iter().map(|(problem, _)| problem);
+    let problems = starts.iter().map(|start| start.problem);
     let fitted = problems.map(|problem| problem.with_runs(|run| effort.fits(&run.id)).metered());
     let fitted: Vec<_> = fitted.collect();
     let priors: Vec<Prior> = (0..own)
@@ -39,7 +51,7 @@ pub(crate) fn far_starts(
             spread: DESIGN,
         })
         .collect();
-    let energies: Vec<Energies> = fitted.iter().map(Energies::new).collect();
+    let energies: Vec<Energies> = fitted.iter().map(Energies::loud).collect();
     let compared = energies.iter().map(|inner| WithPriors {
         inner,
         priors: &priors,
@@ -49,26 +61,32 @@ pub(crate) fn far_starts(
         .iter()
         .zip(starts)
         .enumerate()
-        .map(|(index, (compared, (problem, x)))| Searched {
+        .map(|(index, (compared, start))| Searched {
             index,
-            region: Region::new(compared, x, &ranges(problem, own)),
-            x: x.clone(),
+            region: Region::new(compared, &start.x, &ranges(start, own)),
+            x: start.x.clone(),
             left: f64::INFINITY,
             steps: 0,
         })
         .collect();
     let all = searches.len();
-    for (round, each) in EACH.into_iter().enumerate() {
+    let mut most = 0;
+    for round in 0..ROUNDS {
         if round > 0 && !effort.goes_on() {
             break;
         }
-        let on = &mut searches[..all.div_ceil(KEPT.pow(round as u32))];
+        let on = &mut searches[..all.div_ceil(KEPT.pow(round))];
+        most += FAR_ROUND / on.len().max(1) as u64;
         let searched = on.par_iter_mut().map(|search| {
             let problem = &fitted[search.index];
-            let most = each * search.region.dimensions() as u64;
-            let input = ("far start", problem, &starts[search.index].1, own, most);
+            let FarStart { x, followed, .. } = &starts[search.index];
+            let input = ("far start", problem, x, followed, own, most);
             let numbers = effort.journal.once(&input, || {
-                let found = search.region.searched(most, &mut |_| (fitter.watch)());
+                let within = || match problem.meter.steps() < most {
+                    true => (fitter.watch)(),
+                    false => ControlFlow::Break(()),
+                };
+                let found = search.region.searched(u64::MAX, &mut |_| within());
                 if (fitter.watch)().is_break() {
                     return Err(Error::Stopped);
                 }
@@ -111,20 +129,30 @@ struct Searched<'a, T> {
     steps: u64,
 }
 
-/// The coordinates of a problem with their ranges: the whole ones of what was added to the machine.
-fn ranges(problem: &Problem, own: usize) -> Vec<(usize, [f64; 2])> {
+/// The coordinates of a set with their ranges: the whole ones of what was added to the machine, and a part of what is followed.
+fn ranges(start: &FarStart, own: usize) -> Vec<(usize, [f64; 2])> {
     let half = SPREADS * DESIGN;
-    let range = |(place, parameter): (usize, &Parameter)| match place < own {
-        true => (place, [-half, half]),
-        false => (place, parameter.box_bounds()),
+    let range = |(place, parameter): (usize, &Parameter)| {
+        let [low, high] = match place < own {
+            true => [-half, half],
+            false => parameter.box_bounds(),
+        };
+        if place >= start.followed {
+            return (place, [low, high]);
+        }
+        let near = 0.5 * FOLLOWED * (high - low);
+        let x = start.x[place];
+        (place, [low.max(x - near), high.min(x + near)])
     };
-    problem.parameters.iter().enumerate().map(range).collect()
+    let parameters = start.problem.parameters.iter();
+    parameters.enumerate().map(range).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::amendment::Amendment;
+    use crate::fitter::Start;
     use crate::fitter::effort::Effort;
     use crate::fitter::journal::Journal;
     use crate::fixture::{effort, fitter, problem_of};
@@ -142,13 +170,45 @@ mod tests {
         kinds.map(of).into()
     }
 
+    fn from(sets: &[Start], followed: usize) -> Vec<FarStart<'_>> {
+        let sets = sets.iter();
+        let from = sets.map(|(problem, x)| FarStart {
+            problem,
+            x: x.clone(),
+            followed,
+        });
+        from.collect()
+    }
+
+    #[test]
+    fn what_was_searched_before_is_followed_nearby_within_its_bounds() {
+        let problem = problem_of(json!([]));
+        let sets = sets(&problem, ["extra_clearance", "sensor_gain"]);
+        let ranges = |x: f64, followed: usize| {
+            let mut start = from(&sets, followed).swap_remove(1);
+            start.x[0] = x;
+            let of_each = ranges(&start, 1).into_iter();
+            let of_each: Vec<[f64; 2]> = of_each.map(|(_, range)| range).collect();
+            of_each
+        };
+        let whole = ranges(0.1, 0);
+        assert_eq!(whole[0], [-0.6, 0.6]);
+        let followed = ranges(0.1, 1);
+        let near = [0.1 - 0.15, 0.1 + 0.15];
+        for (bound, expected) in followed[0].into_iter().zip(near) {
+            assert!((bound - expected).abs() < 1e-12, "{bound} {expected}");
+        }
+        assert_eq!(followed[1], whole[1]);
+        assert_eq!(ranges(0.6, 1)[0][1], 0.6);
+    }
+
     #[test]
     fn the_set_that_explains_comes_first_and_is_found_again_in_the_journal() {
         let hidden =
             json!([{"sensor_gain": {"measure": "crosshead_acceleration", "error": "40 %"}}]);
         let problem = problem_of(hidden);
         let sets = sets(&problem, ["extra_clearance", "sensor_gain"]);
-        let starts: Vec<&Start> = sets.iter().collect();
+        let starts = from(&sets, 0);
         let path = std::env::temp_dir().join(format!("far-starts-{}", std::process::id()));
         let searched = || {
             let effort = Effort {

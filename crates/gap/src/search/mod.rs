@@ -20,7 +20,7 @@ use crate::error::{Error, possible};
 use crate::fitter::{Few, Fitter, Start};
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
-use crate::search::far_starts::far_starts;
+use crate::search::far_starts::{FarStart, far_starts};
 use crate::search::hypothesis::{Hypothesis, added, of_kinds};
 use crate::search::screen::{Screened, screen};
 use crate::search::trial::{Rank, Trial, is_at_noise, likelier, settled, trials};
@@ -223,7 +223,7 @@ impl Search<'_> {
     /// left of them does not count: it is the ringing in which they ended.
     fn far_away(&self, trials: &[&Trial]) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.different.parameters.len();
-        let starts: Vec<&Start> = trials.iter().map(|trial| &trial.start).collect();
+        let starts: Vec<FarStart> = trials.iter().map(|trial| trial.far()).collect();
         let far = far_starts(self.fitter, &starts, own)?.into_iter();
         let machines = far.map(|(index, x)| {
             let Trial { set, start, .. } = trials[index];

@@ -3,6 +3,7 @@
 use crate::amendment::Amendment;
 use crate::error::{Error, possible};
 use crate::fitter::{Few, Fitter, Start};
+use crate::search::far_starts::FarStart;
 use crate::search::hypothesis::{Amended, Hypothesis, added, start};
 use crate::search::screen::{FORMS, Point, Screened};
 use calibrate::Problem;
@@ -12,6 +13,8 @@ use rayon::prelude::*;
 pub(crate) struct Trial {
     pub set: Vec<Amended>,
     pub start: Start,
+    /// The coordinates of the node, before rough descents.
+    node: Vec<f64>,
     /// Twice the negative logarithm of the likelihood there.
     deviance: f64,
     /// The sum of squares that energies left; infinite of pressures alone, which have none.
@@ -33,6 +36,22 @@ impl Trial {
         match by {
             Rank::Likelihood => self.deviance,
             Rank::Energies => self.energies,
+        }
+    }
+
+    /// From where it is searched far away. What the node has was searched before; but where that is nothing, the values with which the
+    /// machine fits belong to a wrong ringing, and those that were given count.
+    pub fn far(&self) -> FarStart<'_> {
+        let (problem, x) = &self.start;
+        let alone = self.set.len() == 1;
+        let mut x = x.clone();
+        for (x, node) in x.iter_mut().zip(&self.node) {
+            *x = if alone { 0.0 } else { *node };
+        }
+        FarStart {
+            problem,
+            x,
+            followed: if alone { 0 } else { self.node.len() },
         }
     }
 
@@ -107,6 +126,7 @@ fn trial(
         energies: rough.energies,
         set,
         start: (with, rough.x),
+        node: node.model.x.clone(),
     }))
 }
 
@@ -177,6 +197,7 @@ mod tests {
             Trial {
                 set: vec![Amended { amendment, values }],
                 start,
+                node: vec![0.0],
                 deviance: 0.0,
                 energies: 0.0,
             }
