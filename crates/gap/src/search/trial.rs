@@ -183,29 +183,55 @@ mod tests {
     use crate::model::Model;
     use serde_json::json;
 
+    /// A set of an amendment of this kind at its usual values, of which nothing is known.
+    fn usual(problem: &Problem, kind: &str) -> Trial {
+        let all = Amendment::all(problem).unwrap();
+        let found = all.into_iter().find(|one| one.kind() == kind);
+        let amendment = found.unwrap();
+        let values = amendment.effect().unwrap().usual();
+        let start = start(problem, &[0.0], &amendment, &values).unwrap();
+        Trial {
+            set: vec![Amended { amendment, values }],
+            start,
+            node: vec![0.0],
+            deviance: f64::INFINITY,
+            energies: f64::INFINITY,
+        }
+    }
+
+    #[test]
+    fn a_set_is_searched_from_the_given_machine_and_a_pair_from_where_its_node_was() {
+        let mut trial = usual(&problem(), "sensor_gain");
+        let (own, new) = trial.start.1.split_at_mut(1);
+        (own[0], new[0]) = (0.4, 0.2);
+        trial.node = vec![0.3];
+        let from = trial.far();
+        assert_eq!((&from.x[..2], from.followed), (&[0.0, 0.2][..], 0));
+        trial.set.push(trial.set[0].clone());
+        let from = trial.far();
+        assert_eq!((&from.x[..2], from.followed), (&[0.3, 0.2][..], 1));
+    }
+
+    #[test]
+    fn what_is_left_is_measured_by_the_rank() {
+        let trial = Trial {
+            deviance: 1.0,
+            energies: 2.0,
+            ..usual(&problem(), "sensor_gain")
+        };
+        let left = [Rank::Likelihood, Rank::Energies].map(|by| trial.left(by));
+        assert_eq!(left, [1.0, 2.0]);
+    }
+
     #[test]
     fn another_form_is_fitted_where_the_first_leaves_more_than_noise() {
         let hidden =
             json!([{"sensor_gain": {"measure": "crosshead_acceleration", "error": "40 %"}}]);
         let problem = problem_of(hidden);
-        let all = Amendment::all(&problem).unwrap();
-        let trial = |kind: &str| {
-            let amendment = all.iter().find(|one| one.kind() == kind).unwrap();
-            let values = amendment.effect().unwrap().usual();
-            let start = start(&problem, &[0.0], amendment, &values).unwrap();
-            let amendment = amendment.clone();
-            Trial {
-                set: vec![Amended { amendment, values }],
-                start,
-                node: vec![0.0],
-                deviance: 0.0,
-                energies: 0.0,
-            }
-        };
         let fitted = |forms: &[&str]| {
             let effort = effort();
             let fitter = &fitter(&effort);
-            let forms: Vec<Trial> = forms.iter().map(|kind| trial(kind)).collect();
+            let forms: Vec<Trial> = forms.iter().map(|kind| usual(&problem, kind)).collect();
             let best = settled(fitter, &forms, 1).unwrap().unwrap();
             (best.kinds().concat(), effort.journal.spent())
         };
