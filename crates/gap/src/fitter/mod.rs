@@ -122,7 +122,7 @@ impl Fitter<'_> {
                 let problem = &starts[rough.start].0;
                 let descent = self.descended(problem, &rough.end, &[*stage])?;
                 Ok(descent.map(|descent| {
-                    rough.take(*stage, descent);
+                    rough.take(descent);
                     rough
                 }))
             });
@@ -348,8 +348,6 @@ pub(crate) struct Rough {
     pub x: Vec<f64>,
     /// Twice the negative logarithm of the likelihood there.
     pub deviance: f64,
-    /// What energies left, a sum of squares; of pressures alone, which have none, infinite.
-    pub energies: f64,
     /// Where the last descent ended, and what was left there.
     end: Vec<f64>,
     last: f64,
@@ -361,17 +359,13 @@ impl Rough {
             start,
             x: x.to_vec(),
             deviance: f64::INFINITY,
-            energies: f64::INFINITY,
             end: x.to_vec(),
             last: f64::INFINITY,
         }
     }
 
     /// Goes on to where a stage has ended.
-    fn take(&mut self, stage: Stage, descent: Descent) {
-        if let Stage::Energies(_) = stage {
-            self.energies = descent.last;
-        }
+    fn take(&mut self, descent: Descent) {
         if descent.least < self.deviance {
             (self.x, self.deviance) = (descent.x, descent.least);
         }

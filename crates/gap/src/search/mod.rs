@@ -23,7 +23,7 @@ use crate::recorded::is_of_pressures;
 use crate::search::far_starts::{FarStart, far_starts};
 use crate::search::hypothesis::{Hypothesis, added, of_kinds};
 use crate::search::screen::{Screened, screen};
-use crate::search::trial::{Rank, Trial, is_at_noise, likelier, settled, trials};
+use crate::search::trial::{Trial, is_at_noise, likelier, settled, trials};
 use calibrate::energies::TIMING;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -73,11 +73,7 @@ impl Search<'_> {
             }
             let beam = beam(&nodes, &lowest, &expanded);
             expanded.extend(beam.iter().map(Hypothesis::labels));
-            let by = match lowest.is_empty() {
-                true => Rank::Likelihood,
-                false => Rank::Energies,
-            };
-            let beside = self.beside(&beam, by, &nothing.model)?;
+            let beside = self.beside(&beam, &nothing.model)?;
             for set in beside.fitted {
                 add(&mut nodes, set);
             }
@@ -143,7 +139,7 @@ impl Search<'_> {
             others.extend(screened.map(|screened| (without.clone(), screened)));
         }
         let fitted = others.into_par_iter().map(|(without, screened)| {
-            let forms = trials(self.fitter, self.few, &without, &screened, Rank::Likelihood)?;
+            let forms = trials(self.fitter, self.few, &without, &screened)?;
             settled(self.fitter, &forms, own)
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
@@ -152,7 +148,7 @@ impl Search<'_> {
 
     /// The sets of these nodes with each of the most promising other amendments; `nothing` is the machine without any. Where none
     /// of them leaves little, they are fitted from far away, too.
-    fn beside(&self, beam: &[Hypothesis], by: Rank, nothing: &Model) -> Result<Beside, Error> {
+    fn beside(&self, beam: &[Hypothesis], nothing: &Model) -> Result<Beside, Error> {
         let alone = beam.iter().all(|node| node.set.is_empty());
         let so_far = beam.first().map_or(f64::NAN, |best| best.model.fitted);
         let mut of_each = Vec::new();
@@ -166,12 +162,12 @@ impl Search<'_> {
         let chosen = in_turn(beam, of_each, TRIED * beam.len());
         let rough = chosen.into_par_iter().map(|(node, screened)| {
             (self.fitter.say)(&words(node, "fitting roughly"), node.model.fitted);
-            trials(self.fitter, self.few, node, &screened, by)
+            trials(self.fitter, self.few, node, &screened)
         });
         let mut rough = rough.collect::<Result<Vec<_>, Error>>()?;
         rough.retain(|forms| !forms.is_empty());
         // What a freer law costs counts once it has been fitted.
-        rough.sort_by(|a, b| a[0].left(by).total_cmp(&b[0].left(by)));
+        rough.sort_by(|a, b| a[0].deviance.total_cmp(&b[0].deviance));
         let count = if alone { REFINED } else { REFINED_BESIDE };
         let mut fitted = self.refined(&rough[..count.min(rough.len())], so_far)?;
         let mut lowest = Vec::new();

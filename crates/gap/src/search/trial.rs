@@ -16,29 +16,10 @@ pub(crate) struct Trial {
     /// The coordinates of the node, before rough descents.
     node: Vec<f64>,
     /// Twice the negative logarithm of the likelihood there.
-    deviance: f64,
-    /// The sum of squares that energies left; infinite of pressures alone, which have none.
-    energies: f64,
-}
-
-/// What ranks sets that were fitted roughly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Rank {
-    /// How likely they make the recordings.
-    Likelihood,
-    /// Energies alone: where descents end in wrong ringings, the likelihood there is that of the ringing.
-    Energies,
+    pub deviance: f64,
 }
 
 impl Trial {
-    /// What the set leaves, by this measure.
-    pub fn left(&self, by: Rank) -> f64 {
-        match by {
-            Rank::Likelihood => self.deviance,
-            Rank::Energies => self.energies,
-        }
-    }
-
     /// From where it is searched far away. What the node has was searched before; but where that is nothing, the values with which the
     /// machine fits belong to a wrong ringing, and those that were given count.
     pub fn far(&self) -> FarStart<'_> {
@@ -76,7 +57,6 @@ pub(crate) fn trials(
     few: &Few,
     node: &Hypothesis,
     screened: &Screened,
-    by: Rank,
 ) -> Result<Vec<Trial>, Error> {
     let amendment = &screened.amendment;
     let problem = added(&few.alike, &node.set)?;
@@ -92,7 +72,7 @@ pub(crate) fn trials(
     let trials = forms.map(|points| trial(fitter, node, (amendment, &points), &problem));
     let trials = trials.collect::<Result<Vec<_>, Error>>()?;
     let mut trials: Vec<Trial> = trials.into_iter().flatten().collect();
-    trials.sort_by(|a, b| a.left(by).total_cmp(&b.left(by)));
+    trials.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
     trials.truncate(FORMS);
     Ok(trials)
 }
@@ -123,7 +103,6 @@ fn trial(
     });
     Ok(Some(Trial {
         deviance: rough.deviance,
-        energies: rough.energies,
         set,
         start: (with, rough.x),
         node: node.model.x.clone(),
@@ -195,7 +174,6 @@ mod tests {
             start,
             node: vec![0.0],
             deviance: f64::INFINITY,
-            energies: f64::INFINITY,
         }
     }
 
@@ -210,17 +188,6 @@ mod tests {
         trial.set.push(trial.set[0].clone());
         let from = trial.far();
         assert_eq!((&from.x[..2], from.followed), (&[0.3, 0.2][..], 1));
-    }
-
-    #[test]
-    fn what_is_left_is_measured_by_the_rank() {
-        let trial = Trial {
-            deviance: 1.0,
-            energies: 2.0,
-            ..usual(&problem(), "sensor_gain")
-        };
-        let left = [Rank::Likelihood, Rank::Energies].map(|by| trial.left(by));
-        assert_eq!(left, [1.0, 2.0]);
     }
 
     #[test]
@@ -243,42 +210,6 @@ mod tests {
         // Nothing more is fitted after one that leaves noise.
         let first = fitted(&["sensor_gain", "extra_clearance"]);
         assert_eq!(first, (right, of_right));
-    }
-
-    #[test]
-    fn trials_are_ranked_by_what_is_asked_for() {
-        let hidden =
-            json!([{"sensor_gain": {"measure": "crosshead_acceleration", "error": "40 %"}}]);
-        let problem = problem_of(hidden);
-        let effort = effort();
-        let fitter = &fitter(&effort);
-        let few = Few {
-            alike: problem.clone(),
-            different: problem.clone(),
-        };
-        let model = Model::at(problem.clone(), &[0.0], 0.0, &effort).unwrap();
-        let node = Hypothesis::new(Vec::new(), model, 1);
-        let all = Amendment::all(&problem).unwrap();
-        let trial = |kind: &str, by: Rank| {
-            let amendment = all.iter().find(|one| one.kind() == kind).unwrap().clone();
-            let values = amendment.effect().unwrap().usual();
-            let starts = vec![Point {
-                x: vec![0.0],
-                values,
-            }];
-            let screened = Screened { amendment, starts };
-            let trials = trials(fitter, &few, &node, &screened, by).unwrap();
-            let left: Vec<f64> = trials.iter().map(|trial| trial.left(by)).collect();
-            assert!(
-                left.is_sorted() && left[0].is_finite(),
-                "{kind} {by:?} {left:?}"
-            );
-            left[0]
-        };
-        for by in [Rank::Likelihood, Rank::Energies] {
-            let [right, wrong] = ["sensor_gain", "ring_friction"].map(|kind| trial(kind, by));
-            assert!(right < wrong, "{by:?}: {right} {wrong}");
-        }
     }
 
     #[test]
