@@ -159,7 +159,6 @@ pub(crate) fn is_at_noise(set: &Hypothesis) -> bool {
 mod tests {
     use super::*;
     use crate::fixture::{effort, fitter, problem, problem_of};
-    use crate::model::Model;
     use serde_json::json;
 
     /// A set of an amendment of this kind at its usual values, of which nothing is known.
