@@ -2,7 +2,7 @@
 
 use crate::amendment::Amendment;
 use crate::criteria::{EXPLAINED, Verdict, explains, verdict};
-use crate::error::Error;
+use crate::error::{Error, possible};
 use crate::finding::{Correction, Found, Tried};
 use crate::fitter::effort::Effort;
 use crate::fitter::{Fitter, Watch};
@@ -120,6 +120,12 @@ pub fn explain(
         correlations,
         ..
     } = fitter.bounds(&model)?;
+    if let Some(last) = found.last_mut()
+        && let Some(nearer) = nearer(&model, &estimates, effort)?
+    {
+        last.after = Some(nearer.clone());
+        model = nearer;
+    }
     as_in_model(&mut estimates, &model.x);
     let corrections = corrections(&estimates, &probabilities);
     let mut chain: Vec<Found> = hum.iter().filter_map(|h| mains_hum(h, &model)).collect();
@@ -146,6 +152,18 @@ pub fn explain(
         refused,
         missing_force,
     })
+}
+
+/// The model where the fit that gives the intervals has ended, if that leaves less: it goes on for longer.
+fn nearer(model: &Model, estimates: &[Estimate], effort: &Effort) -> Result<Option<Model>, Error> {
+    let ends = estimates
+        .iter()
+        .map(|one| one.parameter.coordinate(one.value));
+    let x: Vec<f64> = ends.collect();
+    let there = possible(Model::at(model.problem.clone(), &x, model.timing, effort))?;
+    let leaves_less =
+        |there: &Model| there.deviance < model.deviance && there.fitted < model.fitted;
+    Ok(there.filter(leaves_less))
 }
 
 /// The values with which the model was found, coordinates `x`, as the machine file has them: the fit that gives the intervals may end
@@ -371,7 +389,27 @@ fn corrections(estimates: &[Estimate], probabilities: &[(String, f64)]) -> Vec<C
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::problem;
+    use crate::fixture::{effort, problem, problem_of};
+    use serde_json::json;
+
+    #[test]
+    fn a_model_goes_to_where_its_last_fit_leaves_less_and_nowhere_else() {
+        let problem = problem_of(json!([]));
+        let parameter = problem.parameters[0].clone();
+        let effort = effort();
+        let model = Model::at(problem, &[0.02], 0.0, &effort).unwrap();
+        let ended = |x: f64| {
+            let estimate = Estimate {
+                value: parameter.value(x),
+                parameter: parameter.clone(),
+                interval: None,
+            };
+            nearer(&model, &[estimate], &effort).unwrap()
+        };
+        let there = ended(0.0).unwrap();
+        assert!(there.x[0].abs() < 1e-12 && there.fitted < model.fitted);
+        assert!(ended(0.05).is_none());
+    }
 
     #[test]
     fn beside_a_value_that_is_not_identifiable_all_are_those_of_the_machine_file() {
