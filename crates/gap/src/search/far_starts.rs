@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 /// Rounds of a search.
-const ROUNDS: u32 = 4;
+const FAR_ROUNDS: u32 = 4;
 /// Share of its range within which a coordinate is followed that was searched before.
 const FOLLOWED: f64 = 0.25;
 
@@ -71,7 +71,7 @@ pub(crate) fn far_starts(
         .collect();
     let all = searches.len();
     let mut most = 0;
-    for round in 0..ROUNDS {
+    for round in 0..FAR_ROUNDS {
         if round > 0 && !effort.goes_on() {
             break;
         }
