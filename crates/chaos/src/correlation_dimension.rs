@@ -1,7 +1,9 @@
 //! Correlation dimension (Grassberger and Procaccia 1983).
 
+use crate::bits::{WORD, below};
 use crate::error::{Error, checked};
 use crate::neighbours::Delays;
+use scalar::Scalar;
 
 /// The dimension with a measure of how straight the fit is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,11 +58,14 @@ pub fn correlation_dimension(
             }
         }
     }
-    let squares = nearest.sorted();
     // Points (ln r, ln C) at correlation sums in even ratios.
-    let points: Vec<(f64, f64)> = (0..POINTS)
-        .map(|i| LOW * (HIGH / LOW).powf(i as f64 / (POINTS - 1) as f64))
-        .map(|sum| (0.5 * squares[rank(sum)].ln(), sum.ln()))
+    let sums: [f64; POINTS] =
+        std::array::from_fn(|i| LOW * (HIGH / LOW).powf(i as f64 / (POINTS - 1) as f64));
+    let squares = nearest.of_ranks(&sums.map(rank));
+    let points: Vec<(f64, f64)> = squares
+        .iter()
+        .zip(sums)
+        .map(|(square, sum)| (0.5 * square.ln(), sum.ln()))
         .collect();
     let slopes: Vec<f64> = points
         .windows(2)
@@ -99,9 +104,15 @@ impl Nearest {
     }
 
     fn extend(&mut self, numbers: &[f64]) {
-        for number in numbers {
-            if *number < self.limit {
-                self.push(*number);
+        for numbers in numbers.chunks(WORD) {
+            let limit = self.limit;
+            let mut less = f64::vectorised(
+                #[inline(always)]
+                || below(numbers, limit),
+            );
+            while less != 0 {
+                self.push(numbers[less.trailing_zeros() as usize]);
+                less &= less - 1;
             }
         }
     }
@@ -117,11 +128,21 @@ impl Nearest {
         self.kept.push(number);
     }
 
-    /// The least `most` of them, or all.
-    fn sorted(mut self) -> Vec<f64> {
-        self.kept.sort_by(f64::total_cmp);
-        self.kept.truncate(self.most);
-        self.kept
+    /// Those of these ranks, which ascend, from 0 for the least.
+    fn of_ranks(mut self, ranks: &[usize]) -> Vec<f64> {
+        let mut left = &mut self.kept[..];
+        let mut found: Vec<f64> = ranks
+            .iter()
+            .rev()
+            .map(|rank| {
+                let (_, number, _) = left.select_nth_unstable_by(*rank, f64::total_cmp);
+                let number = *number;
+                left = &mut std::mem::take(&mut left)[..=*rank];
+                number
+            })
+            .collect();
+        found.reverse();
+        found
     }
 }
 
@@ -159,10 +180,10 @@ mod tests {
     fn the_nearest_are_kept() {
         let mut nearest = Nearest::new(5);
         (0..1000).for_each(|i| nearest.extend(&[f64::from(i * 617 % 1000)]));
-        assert_eq!(nearest.sorted(), [0.0, 1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(nearest.of_ranks(&[0, 1, 3, 3, 4]), [0.0, 1.0, 3.0, 3.0, 4.0]);
         let mut few = Nearest::new(5);
         few.extend(&[2.0, 1.0]);
-        assert_eq!(few.sorted(), [1.0, 2.0]);
+        assert_eq!(few.of_ranks(&[0, 1]), [1.0, 2.0]);
     }
 
     #[test]

@@ -11,7 +11,7 @@ const EXAMINED: usize = 2000;
 /// Increase of Cao's quotient that counts as none.
 const SATURATED: f64 = 0.05;
 
-/// Shares of false nearest neighbours and Cao's quantities for dimensions 1, 2, ...
+/// Shares of false nearest neighbours and Cao's quantities for dimensions 1, 2, ... as far as they were examined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unfolding {
     /// Share of nearest neighbours that part with one more coordinate (Kennel, Brown and
@@ -24,6 +24,24 @@ pub struct Unfolding {
 }
 
 impl Unfolding {
+    /// What these dimensions say, the last of which is compared with the one before only.
+    fn of(steps: &[Step]) -> Self {
+        let quotients = |value: fn(&Step) -> f64| -> Vec<f64> {
+            steps
+                .windows(2)
+                .map(|s| value(&s[1]) / value(&s[0]).max(f64::MIN_POSITIVE))
+                .collect()
+        };
+        Self {
+            false_share: steps[..steps.len() - 1]
+                .iter()
+                .map(|s| s.false_share)
+                .collect(),
+            e1: quotients(|s| s.expansion),
+            e2: quotients(|s| s.parting),
+        }
+    }
+
     /// Smallest dimension without false neighbours; `None` where noise leaves some in each.
     pub fn by_false_neighbours(&self) -> Option<usize> {
         self.false_share
@@ -51,7 +69,8 @@ impl Unfolding {
     }
 }
 
-/// What each further coordinate does to nearest neighbours, up to `largest` coordinates.
+/// What each further coordinate does to nearest neighbours, until both criteria have found a dimension, and up to
+/// `largest` coordinates.
 ///
 /// # Errors
 /// A signal that [`checked`] refuses or that is too short for `largest` and `times`, or a `largest` outside 1 to
@@ -73,30 +92,20 @@ pub fn unfolding(signal: &[f64], times: &Times, largest: usize) -> Result<Unfold
             needed,
         });
     }
-    let steps: Vec<Step> = (1..=largest + 1)
-        .map(|dimension| {
-            step(
-                &Delays {
-                    signal,
-                    dimension,
-                    delay: times.delay,
-                },
-                times,
-                deviation,
-            )
-        })
-        .collect();
-    let quotients = |value: fn(&Step) -> f64| -> Vec<f64> {
-        steps
-            .windows(2)
-            .map(|s| value(&s[1]) / value(&s[0]).max(f64::MIN_POSITIVE))
-            .collect()
-    };
-    Ok(Unfolding {
-        false_share: steps[..largest].iter().map(|s| s.false_share).collect(),
-        e1: quotients(|s| s.expansion),
-        e2: quotients(|s| s.parting),
-    })
+    let mut steps = Vec::new();
+    for dimension in 1..=largest + 1 {
+        let delays = Delays {
+            signal,
+            dimension,
+            delay: times.delay,
+        };
+        steps.push(step(&delays, times, deviation));
+        let so_far = Unfolding::of(&steps);
+        if so_far.by_false_neighbours().is_some() && so_far.by_cao().is_some() {
+            return Ok(so_far);
+        }
+    }
+    Ok(Unfolding::of(&steps))
 }
 
 /// One dimension: the share of false neighbours, Cao's `E` and `E*`.
@@ -117,12 +126,13 @@ fn step(delays: &Delays, times: &Times, deviation: f64) -> Step {
         return step;
     };
     let mut examined = 0.0;
-    for index in (0..count).step_by(count.div_ceil(EXAMINED)) {
-        // Vectors that repeat exactly say nothing (Cao 1997): the nearest that differs is taken.
-        let near = neighbours.nearest(index, 1);
-        let Some(near) = near.first().filter(|n| n.distance > 0.0) else {
+    let every = count.div_ceil(EXAMINED);
+    for (place, near) in neighbours.nearest_of_each(every).into_iter().enumerate() {
+        // Vectors that repeat exactly say nothing (Cao 1997).
+        let Some(near) = near.filter(|n| n.distance > 0.0) else {
             continue;
         };
+        let index = place * every;
         let further =
             (delays.at(index, delays.dimension) - delays.at(near.index, delays.dimension)).abs();
         let whole = near.distance.hypot(further);

@@ -18,7 +18,7 @@ pub fn rosenstein(delays: &Delays, theiler: usize, steps: usize) -> Result<Curve
     let mut logarithms = MeanLogarithms::new(steps + 1);
     let reach = steps + 1 + delays.span();
     let mut squares = vec![0.0; reach];
-    for (index, near) in search.nearest_of_each().into_iter().enumerate() {
+    for (index, near) in search.nearest_of_each(1).into_iter().enumerate() {
         let Some(near) = near else { continue };
         let (here, there) = (&delays.signal[index..], &delays.signal[near.index..]);
         for ((square, a), b) in squares.iter_mut().zip(here).zip(there) {

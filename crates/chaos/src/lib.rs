@@ -4,6 +4,7 @@
 //! evenly spaced samples in order of time, in any unit. Times, lags and steps are in samples.
 
 pub mod autocorrelation;
+mod bits;
 mod blocks;
 pub mod classical;
 pub mod correlation_dimension;

@@ -120,15 +120,16 @@ impl Neighbours {
         }
     }
 
-    /// The nearest vector of each vector in order, `None` where the window leaves no vector.
+    /// The nearest vector of each `step`-th vector in order, `None` where the window leaves no vector.
     ///
-    /// The successor of a vector's neighbour is mostly near the vector's successor. Its distance
+    /// As many samples after a vector's neighbour there mostly is a near one of the next vector. Its distance
     /// bounds the search, which then costs a third of one without a bound.
-    pub fn nearest_of_each(&self) -> Vec<Option<Neighbour>> {
+    pub fn nearest_of_each(&self, step: usize) -> Vec<Option<Neighbour>> {
         let mut last: Option<Neighbour> = None;
         (0..self.count)
+            .step_by(step)
             .map(|index| {
-                let guess = last.map(|n| n.index + 1).filter(|g| *g < self.count);
+                let guess = last.map(|n| n.index + step).filter(|g| *g < self.count);
                 last = match guess {
                     Some(guess) => Some(self.tree.nearest_from(index, guess, self.theiler)),
                     None => self.nearest(index, 1).first().copied(),
@@ -230,13 +231,15 @@ mod tests {
                     delay: 3,
                 };
                 let found = Neighbours::new(&delays, delays.count(), 12).unwrap();
-                let each = found.nearest_of_each();
+                let each = found.nearest_of_each(1);
+                let some = found.nearest_of_each(97);
                 for index in (0..delays.count()).step_by(97) {
                     let near = found.nearest(index, 9);
                     assert!(near.iter().all(|n| n.index.abs_diff(index) > 12));
                     let expected = brute_force(&delays, index, 9, 12);
                     assert_eq!(near.len(), expected.len());
                     assert_eq!(each[index].unwrap().distance, near[0].distance);
+                    assert_eq!(some[index / 97].unwrap().distance, near[0].distance);
                     for (n, e) in near.iter().zip(expected) {
                         assert!((n.distance - e).abs() <= 1e-12 * e.max(1.0), "{n:?} {e}");
                     }
@@ -255,7 +258,7 @@ mod tests {
         };
         let found = Neighbours::new(&delays, 199, 200).unwrap();
         assert!(found.nearest(50, 3).is_empty());
-        assert!(found.nearest_of_each().iter().all(Option::is_none));
+        assert!(found.nearest_of_each(1).iter().all(Option::is_none));
         let wide = Delays {
             dimension: 11,
             ..delays

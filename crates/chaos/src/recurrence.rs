@@ -1,5 +1,6 @@
 //! Recurrence quantification (Zbilut and Webber 1992; Marwan, Romano, Thiel and Kurths 2007).
 
+use crate::bits::{WORD, below};
 use crate::error::{Error, checked};
 use crate::neighbours::Delays;
 use scalar::Scalar;
@@ -79,7 +80,6 @@ struct Plot<'a> {
     /// Squared distance from which a pair is not close.
     limit: f64,
     squares: Vec<f64>,
-    sums: Vec<f64>,
     close: Vec<u64>,
 }
 
@@ -90,7 +90,6 @@ impl<'a> Plot<'a> {
             count,
             limit: radius * radius,
             squares: vec![0.0; count + delays.span()],
-            sums: vec![0.0; count],
             close: Vec::with_capacity(count.div_ceil(WORD)),
         }
     }
@@ -102,52 +101,34 @@ impl<'a> Plot<'a> {
             count,
             limit,
             squares,
-            sums,
             close,
         } = self;
         let (signal, delay) = (delays.signal, delays.delay);
-        let sums = &mut sums[..*count - lag];
-        close.resize(sums.len().div_ceil(WORD), 0);
+        let pairs = *count - lag;
+        close.resize(pairs.div_ceil(WORD), 0);
         f64::vectorised(
             #[inline(always)]
             || {
                 for (square, (a, b)) in squares.iter_mut().zip(signal.iter().zip(&signal[lag..])) {
                     *square = (a - b) * (a - b);
                 }
-                sums.copy_from_slice(&squares[..sums.len()]);
-                for axis in 1..delays.dimension {
-                    for (sum, square) in sums.iter_mut().zip(&squares[axis * delay..]) {
-                        *sum += square;
+                let mut sums = [0.0; WORD];
+                for (place, word) in close.iter_mut().enumerate() {
+                    let first = place * WORD;
+                    let sums = &mut sums[..WORD.min(pairs - first)];
+                    sums.copy_from_slice(&squares[first..first + sums.len()]);
+                    for axis in 1..delays.dimension {
+                        for (sum, square) in sums.iter_mut().zip(&squares[first + axis * delay..]) {
+                            *sum += square;
+                        }
                     }
-                }
-                for (word, sums) in close.iter_mut().zip(sums.chunks(WORD)) {
-                    *word = bits(sums, *limit);
+                    *word = below(sums, *limit);
                 }
             },
         );
         close
     }
 }
-
-/// Which of these are less than `limit`, a bit each.
-#[inline(always)]
-fn bits(numbers: &[f64], limit: f64) -> u64 {
-    let mut bytes = [0; WORD];
-    for (byte, number) in bytes.iter_mut().zip(numbers) {
-        *byte = u8::from(*number < limit);
-    }
-    // Eight bytes of 0 or 1 become the eight highest bits of a product, the first one the lowest.
-    let (eights, _) = bytes.as_chunks::<8>();
-    let packed = eights
-        .iter()
-        .map(|eight| u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56);
-    packed
-        .enumerate()
-        .fold(0, |word, (place, byte)| word | byte << (8 * place))
-}
-
-/// Bits in a word.
-const WORD: usize = u64::BITS as usize;
 
 /// The lines along columns of the plot that have not ended: a bit for each pair of a lag, and since which lag each
 /// vector's is close.

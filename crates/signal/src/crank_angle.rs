@@ -1,6 +1,7 @@
 //! The crank angle of every sample: unwrapped and freed of the encoder's steps.
 
 use crate::error::{Error, positive};
+use scalar::Scalar;
 use std::f64::consts::{PI, TAU};
 
 /// One step of a 16-bit encoder, rad.
@@ -191,50 +192,98 @@ fn check_length(got: usize) -> Result<(), Error> {
 }
 
 /// Each value replaced by that of the quadratic fitted to it and `half` neighbours on either
-/// side. Near the ends, by that of the first or last such quadratic. `y` has 2·`half` + 1 values
+/// side (Savitzky and Golay 1964). Near the ends, by that of the first or last such quadratic. `y` has 2·`half` + 1 values
 /// or more.
 fn smooth(y: &[f64], half: usize) -> Vec<f64> {
     if half == 0 {
         return y.to_vec();
     }
-    let last = y.len() - 1;
-    let mut smoothed = Vec::with_capacity(y.len());
-    let mut fitted_at = usize::MAX;
-    let mut quadratic = [0.0; 3];
-    for i in 0..y.len() {
-        let centre = i.clamp(half, last - half);
-        if centre != fitted_at {
-            quadratic = fit_quadratic(&y[centre - half..=centre + half]);
-            fitted_at = centre;
+    let mut smoothed = y.to_vec();
+    let last = y.len() - half;
+    smooth_between_ends(y, half, &mut smoothed[half..last]);
+    let ends = [(0..half, half), (last..y.len(), last - 1)];
+    for (places, centre) in ends {
+        let [c0, c1, c2] = fit_quadratic(&y[centre - half..=centre + half]);
+        for i in places {
+            let j = i as f64 - centre as f64;
+            smoothed[i] = c0 + j * (c1 + j * c2);
         }
-        let j = i as f64 - centre as f64;
-        let [c0, c1, c2] = quadratic;
-        smoothed.push(c0 + j * (c1 + j * c2));
     }
     smoothed
 }
 
+/// Values that are smoothed at a time, which stay in the nearest cache.
+const AT_A_TIME: usize = 512;
+
+/// The values of `y` that have `half` neighbours on either side. What neighbours differ by is added, each with the weight that
+/// it has in the fitted quadratic's value in the middle: sums of small numbers keep their digits.
+fn smooth_between_ends(y: &[f64], half: usize, smoothed: &mut [f64]) {
+    let sums = Sums::over(half);
+    f64::vectorised(
+        #[inline(always)]
+        || {
+            let mut first = half;
+            for smoothed in smoothed.chunks_mut(AT_A_TIME) {
+                let here = &y[first..];
+                for j in 1..=half {
+                    let weight = (sums.s4 - sums.s2 * (j * j) as f64) / sums.determinant();
+                    let sides = y[first - j..].iter().zip(&y[first + j..]);
+                    for ((value, middle), (before, after)) in
+                        smoothed.iter_mut().zip(here).zip(sides)
+                    {
+                        *value += weight * ((before - middle) + (after - middle));
+                    }
+                }
+                first += smoothed.len();
+            }
+        },
+    );
+}
+
+/// Sums over j = −h ..= h.
+struct Sums {
+    /// Of 1.
+    n: f64,
+    /// Of j².
+    s2: f64,
+    /// Of j⁴.
+    s4: f64,
+}
+
+impl Sums {
+    fn over(half: usize) -> Self {
+        let h = half as f64;
+        let n = 2.0 * h + 1.0;
+        let s2 = h * (h + 1.0) * n / 3.0;
+        Self {
+            n,
+            s2,
+            s4: s2 * (3.0 * h * h + 3.0 * h - 1.0) / 5.0,
+        }
+    }
+
+    fn determinant(&self) -> f64 {
+        self.n * self.s4 - self.s2 * self.s2
+    }
+}
+
 /// Least-squares c₀ + c₁j + c₂j² of an odd number of values at j = −h ..= h.
 fn fit_quadratic(y: &[f64]) -> [f64; 3] {
-    let h = (y.len() / 2) as f64;
-    let n = y.len() as f64;
-    // Σj² and Σj⁴ over −h ..= h.
-    let s2 = h * (h + 1.0) * n / 3.0;
-    let s4 = s2 * (3.0 * h * h + 3.0 * h - 1.0) / 5.0;
+    let half = y.len() / 2;
+    let sums = Sums::over(half);
     let [mut y0, mut y1, mut y2] = [0.0; 3];
     for (i, value) in y.iter().enumerate() {
-        let j = i as f64 - h;
+        let j = i as f64 - half as f64;
         // The middle value is taken off: sums of small numbers keep their digits.
-        let value = value - y[y.len() / 2];
+        let value = value - y[half];
         y0 += value;
         y1 += j * value;
         y2 += j * j * value;
     }
-    let determinant = n * s4 - s2 * s2;
     [
-        y[y.len() / 2] + (s4 * y0 - s2 * y2) / determinant,
-        y1 / s2,
-        (n * y2 - s2 * y0) / determinant,
+        y[half] + (sums.s4 * y0 - sums.s2 * y2) / sums.determinant(),
+        y1 / sums.s2,
+        (sums.n * y2 - sums.s2 * y0) / sums.determinant(),
     ]
 }
 
@@ -279,6 +328,20 @@ mod tests {
         let angle = CrankAngle::from_encoder(&readings).unwrap();
         for (a, b) in angle.angles().iter().zip(&truth) {
             assert!((a - b).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn smoothing_keeps_a_quadratic_and_is_its_fit_elsewhere() {
+        let parabola: Vec<f64> = (0..1300).map(|i| 1e-6 * f64::from(i * i) + 0.1).collect();
+        for (a, b) in smooth(&parabola, 9).iter().zip(&parabola) {
+            assert!((a - b).abs() < 1e-12);
+        }
+        let bent: Vec<f64> = (0..1300).map(|i| (0.3 * f64::from(i)).sin()).collect();
+        let smoothed = smooth(&bent, 4);
+        for i in [4, 515, 516, 517, 1295] {
+            let [middle, ..] = fit_quadratic(&bent[i - 4..=i + 4]);
+            assert!((smoothed[i] - middle).abs() < 1e-14);
         }
     }
 
