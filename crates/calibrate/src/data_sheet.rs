@@ -26,6 +26,10 @@ const LENGTH: f64 = 0.01;
 const CLEARANCE: f64 = 0.2;
 /// Of a clearance volume: the pockets of the valves are left out or estimated.
 const VOLUME: f64 = 0.1;
+/// Of an exponent of the gas: that of the gas by itself lies 0.1 above those of cooled cylinders, and of moist gas below.
+const EXPONENT: f64 = 0.04;
+/// Of the pressure of a line: a gauge of class 1.6 (EN 837-1) is that share of its range off, at half of its range twice as much.
+const LINE: f64 = 0.03;
 /// Of the gain of a sensor: accelerometers for industry are sold to ±5 or ±10 %.
 const GAIN: f64 = 0.05;
 /// Of the delay between a channel and the crank angle, s. Anti-alias filters of 1 to 5 kHz have a group delay
@@ -41,7 +45,7 @@ const ORDER: u32 = 2;
 pub const REACH: f64 = 3.0;
 
 /// Values that stand in a data sheet by themselves, and the relative standard deviation of each.
-const VALUES: [(&str, f64); 8] = [
+const VALUES: [(&str, f64); 9] = [
     ("crank.mass", MASS),
     ("rod.length", LENGTH),
     ("rod.mass", MASS),
@@ -50,7 +54,11 @@ const VALUES: [(&str, f64); 8] = [
     ("crosshead.mass", MASS),
     ("cylinder.head_clearance", VOLUME),
     ("cylinder.crank_end.clearance", VOLUME),
+    ("cylinder.exponent", EXPONENT),
 ];
+
+/// Where the pressures of lines stand.
+const LINES: [&str; 2] = ["cylinder.suction", "cylinder.discharge"];
 
 /// A value that may be wrong.
 #[derive(Clone, Debug)]
@@ -68,12 +76,11 @@ pub struct Doubt {
 }
 
 impl Doubt {
-    /// Whether it is a mass or a length of the machine, and no clearance and nothing of a sensor.
+    /// Whether it is a value of the machine by itself or the pressure of its lines, and no clearance of a joint and nothing of a sensor.
     pub fn is_of_machine(&self) -> bool {
         let path = self.parameter.path.as_str();
-        VALUES
-            .iter()
-            .any(|(key, _)| path == *key || path.ends_with(&format!(".{key}")))
+        let is_value = |(key, _): &(&str, f64)| path == *key || path.ends_with(&format!(".{key}"));
+        self.parameter.is_of_each_run() || VALUES.iter().any(is_value)
     }
 
     /// The problem with this value free as well, the last of the parameters.
@@ -92,12 +99,44 @@ impl Doubt {
 pub fn doubts(problem: &Problem) -> Result<Vec<Doubt>, Error> {
     let mut doubts = of_machine(problem)?;
     doubts.extend(of_joints(problem)?);
+    doubts.extend(of_lines(problem)?);
     doubts.extend(of_sensors(problem)?);
-    let fitted = |place: &String| {
-        let mut parameters = problem.parameters.iter();
-        parameters.any(|p| p.run.is_none() && p.places.contains(place))
+    doubts.retain(|doubt| {
+        let of_runs = doubt.parameter.is_of_each_run();
+        let fitted = |place: &String| {
+            let mut parameters = problem.parameters.iter();
+            parameters.any(|p| (of_runs || p.run.is_none()) && p.places.contains(place))
+        };
+        !doubt.parameter.places.iter().any(fitted)
+    });
+    Ok(doubts)
+}
+
+/// The pressures of lines that every run states: all were read from one gauge.
+fn of_lines(problem: &Problem) -> Result<Vec<Doubt>, Error> {
+    let mut doubts = Vec::new();
+    let Some(first) = problem.runs.first() else {
+        return Ok(doubts);
     };
-    doubts.retain(|doubt| !doubt.parameter.places.iter().any(fitted));
+    let mut tree = problem.tree.clone();
+    for (path, value) in &first.settings {
+        paths::set(&mut tree, path, value.clone())?;
+    }
+    let is_line = |path: &str| LINES.iter().any(|line| path.ends_with(line));
+    let is_stated = |path: &str| {
+        let states = |run: &Observation| run.settings.iter().any(|(own, _)| own == path);
+        problem.runs.iter().all(states)
+    };
+    for (path, _) in &first.settings {
+        if is_line(path) && is_stated(path) {
+            let doubt = relative(tree.clone(), path, LINE).map(|doubt| Doubt {
+                tree: problem.tree.clone(),
+                parameter: doubt.parameter.of_each_run(),
+                ..doubt
+            });
+            doubts.extend(doubt);
+        }
+    }
     Ok(doubts)
 }
 

@@ -1,6 +1,7 @@
 //! What is fitted: paths of the machine file, and the coordinates in which they are searched.
 
 use crate::error::Error;
+use crate::run_condition::EACH_RUN;
 use input::paths;
 use input::unit::{self, Dimension, Measure};
 use serde_json::Value;
@@ -13,7 +14,7 @@ pub struct Parameter {
     pub path: String,
     /// The places that hold it; the offset of the crank angle has no place.
     pub places: Vec<String>,
-    /// The run that it is a condition of; none where it holds for the machine.
+    /// The run that it is a condition of, `*` for what every run states, times one factor; none where it holds for the machine.
     pub run: Option<String>,
     /// Its value there, SI.
     pub nominal: f64,
@@ -179,6 +180,13 @@ impl Parameter {
     /// Where the file does not have a place.
     pub fn write_for(&self, run: &str, tree: &mut Value, value: f64) -> Result<(), Error> {
         match self.holds_in(run) {
+            true if self.is_of_each_run() => {
+                for place in &self.places {
+                    let (stated, _) = quantity(tree, place)?;
+                    paths::set(tree, place, self.written(stated * value / self.nominal))?;
+                }
+                Ok(())
+            }
             true => self.write_everywhere(tree, value),
             false => Ok(()),
         }
@@ -186,7 +194,21 @@ impl Parameter {
 
     /// Whether it holds in a run.
     pub fn holds_in(&self, run: &str) -> bool {
-        self.run.as_ref().is_none_or(|of| of == run)
+        self.run.as_ref().is_none_or(|of| of == run) || self.is_of_each_run()
+    }
+
+    /// The same as a factor to what every run states.
+    pub(crate) fn of_each_run(self) -> Self {
+        Self {
+            path: format!("runs.{EACH_RUN}.{}", self.path),
+            run: Some(EACH_RUN.to_owned()),
+            ..self
+        }
+    }
+
+    /// Whether it is a factor to what every run states.
+    pub fn is_of_each_run(&self) -> bool {
+        self.run.as_deref() == Some(EACH_RUN)
     }
 
     /// Whether it changes the motion in a run of this name. A condition of another run does not, nor does an offset

@@ -126,14 +126,32 @@ impl Problem {
 
     /// What the parameters of one run alone come to at these coordinates: paths of the machine file
     /// and their values in this run.
-    pub fn conditions(&self, run: &str, coordinates: &[f64]) -> Vec<(String, Value)> {
+    ///
+    /// # Errors
+    /// Where the file does not have a path.
+    pub fn conditions(
+        &self,
+        run: &str,
+        coordinates: &[f64],
+    ) -> Result<Vec<(String, Value)>, Error> {
         let parameters = self.parameters.iter().zip(coordinates);
-        let own = parameters.filter(|(parameter, _)| parameter.run.as_deref() == Some(run));
-        own.flat_map(|(parameter, x)| {
-            let places = parameter.places.iter();
-            places.map(|place| (place.clone(), parameter.written(parameter.value(*x))))
-        })
-        .collect()
+        let own = parameters
+            .filter(|(parameter, _)| parameter.run.is_some() && parameter.holds_in(run));
+        let own: Vec<_> = own.collect();
+        let mut tree = self.tree.clone();
+        let stated = self.runs.iter().filter(|other| other.id == run);
+        for (path, value) in stated.flat_map(|run| &run.settings) {
+            paths::set(&mut tree, path, value.clone())?;
+        }
+        for (parameter, x) in &own {
+            parameter.write_for(run, &mut tree, parameter.value(**x))?;
+        }
+        let places = own.iter().flat_map(|(parameter, _)| &parameter.places);
+        let values = places.map(|place| {
+            let value = paths::get(&tree, place)?.cloned().unwrap_or_default();
+            Ok((place.clone(), value))
+        });
+        values.collect()
     }
 
     /// The same problem with these runs.

@@ -10,6 +10,8 @@ use serde_json::Value;
 /// By how much the recorded crank angle is ahead of the crank, rad: a dead centre that was set wrong
 /// at the encoder. It is a parameter of every run, or of one: `runs.RUN.crank_angle_offset`.
 pub const CRANK_ANGLE_OFFSET: &str = "crank_angle_offset";
+/// Stands in place of a run's name where every run has what it states times the same factor: a gauge that is off.
+pub(crate) const EACH_RUN: &str = "*";
 /// Without bounds of its own it is searched over 5° to either side, of 0 and of where it is seen.
 const OFFSETS: [f64; 2] = [-5.0_f64.to_radians(), 5.0_f64.to_radians()];
 pub(crate) const ANGLE: Dimension = Dimension::new(0.0, 0.0, 0.0, 1.0);
@@ -28,7 +30,8 @@ impl Parameter {
 
     /// The parameter that `path` names, with bounds of its own where they are given, SI: a value of
     /// the machine file `tree`; `runs.RUN.PATH`, the same value in one run alone (the suction
-    /// pressure, say, which differs from run to run); or [`CRANK_ANGLE_OFFSET`], of all runs or one.
+    /// pressure, say, which differs from run to run); `runs.*.PATH`, one factor to what every run has there, as a value of
+    /// the first run; or [`CRANK_ANGLE_OFFSET`], of all runs or one.
     ///
     /// # Errors
     /// As [`Parameter::at`] and [`Parameter::within`]; a run that is not there.
@@ -41,11 +44,15 @@ impl Parameter {
         let Some(of_runs) = path.strip_prefix("runs.") else {
             return shared(tree, path, bounds);
         };
-        let mut rests = runs.iter().filter_map(|run| {
-            let rest = of_runs.strip_prefix(run.id.as_str())?;
-            Some((run, rest.strip_prefix('.')?))
-        });
-        let Some((run, rest)) = rests.next() else {
+        let behind = |name: &str| of_runs.strip_prefix(name)?.strip_prefix('.');
+        let of_each = runs.first().zip(behind(EACH_RUN));
+        let mut rests = runs
+            .iter()
+            .filter_map(|run| Some((run, behind(run.id.as_str())?)));
+        let named = rests.next().map(|(run, rest)| (run, rest, run.id.as_str()));
+        let Some((run, rest, name)) =
+            named.or(of_each.map(|(run, rest)| (run, rest, EACH_RUN)))
+        else {
             let ids: Vec<&str> = runs.iter().map(|run| run.id.as_str()).collect();
             return Err(Error::Parameter {
                 path: path.to_owned(),
@@ -58,7 +65,7 @@ impl Parameter {
         }
         Ok(Self {
             path: path.to_owned(),
-            run: Some(run.id.clone()),
+            run: Some(name.to_owned()),
             ..shared(&tree, rest, bounds)?
         })
     }

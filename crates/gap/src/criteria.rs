@@ -2,7 +2,7 @@
 
 pub use calibrate::likelihood::NOISE;
 
-use crate::model::Model;
+use crate::model::{Gap, Model};
 use calibrate::Problem;
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +56,9 @@ pub struct Evidence {
     /// Size of the discrepancy that is left with it: the standard deviation of the crank angle at which features
     /// stand, rad.
     pub timing: f64,
+    /// What energies leave without and with it, where they decide: no fit follows the ringing then.
+    #[serde(default)]
+    pub energies: Option<[Gap; 2]>,
 }
 
 /// What speaks for `after`, which has an effect that `before` has not.
@@ -66,6 +69,7 @@ pub(crate) fn evidence(before: &Model, after: &Model) -> Evidence {
         misfit: [before.fitted, after.fitted],
         heldout_misfit: held_out.map(|(before, after)| [before, after]),
         timing: after.timing,
+        energies: None,
     }
 }
 
@@ -95,13 +99,18 @@ pub(crate) fn nats(model: &Model) -> f64 {
     0.5 * (model.deviance + model.heldout_deviance) / dependence(&model.problem)
 }
 
+/// The same where energies are compared and leave this misfit, in standard deviations of what a law somewhat off leaves.
+pub(crate) fn nats_of_energies(problem: &Problem, misfit: f64) -> f64 {
+    0.5 * octaves(problem) * misfit * misfit
+}
+
 /// What so many free parameters cost, in nats (Schwarz 1978).
 pub(crate) fn freedom(problem: &Problem, parameters: usize) -> f64 {
     0.5 * parameters as f64 * (2.0 * octaves(problem)).ln()
 }
 
 /// Share of the distance to the noise that is left of fitted or held-out runs, whichever is more.
-pub(crate) fn left(before: &Model, after: &Model) -> f64 {
+pub(crate) fn left(before: &Gap, after: &Gap) -> f64 {
     let above = |misfit: f64| (misfit * misfit - 1.0).max(0.0).sqrt();
     let share = |before: f64, after: f64| match above(before) > 0.0 {
         true => above(after) / above(before),

@@ -14,11 +14,11 @@ use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
 use crate::results::next_recording::next_recording;
-use crate::search::hypothesis::{Amended, Hypothesis, added};
+use crate::search::hypothesis::{Amended, Hypothesis, View, added};
 use crate::search::judgement::{Forms, Judgement, judged};
 use crate::steps::{StepModel, steps};
 use calibrate::Problem;
-use calibrate::fit::{Estimate, Fit};
+use calibrate::fit::Estimate;
 use nalgebra::DMatrix;
 
 /// What the workflow did and found.
@@ -115,11 +115,13 @@ pub fn explain(
         }
     }
     say("finding bounds", model.fitted);
-    let Fit {
-        mut estimates,
-        correlations,
-        ..
-    } = fitter.bounds(&model)?;
+    let (mut estimates, correlations) = match by_energies(&found) {
+        true => without_intervals(&model),
+        false => {
+            let fit = fitter.bounds(&model)?;
+            (fit.estimates, fit.correlations)
+        }
+    };
     if let Some(last) = found.last_mut()
         && let Some(nearer) = nearer(&model, &estimates, effort)?
     {
@@ -154,6 +156,23 @@ pub fn explain(
     })
 }
 
+/// Whether energies decided on what was found: no fit follows the ringing.
+pub(crate) fn by_energies(found: &[Found]) -> bool {
+    found.iter().any(|one| one.effect.evidence.energies.is_some())
+}
+
+/// The values of a model's parameters, and their correlations, where no fit says how well they are known.
+fn without_intervals(model: &Model) -> (Vec<Estimate>, DMatrix<f64>) {
+    let estimates = model.problem.parameters.iter().zip(&model.x);
+    let estimates = estimates.map(|(parameter, x)| Estimate {
+        value: parameter.value(*x),
+        parameter: parameter.clone(),
+        interval: None,
+    });
+    let count = model.x.len();
+    (estimates.collect(), DMatrix::identity(count, count))
+}
+
 /// The model where the fit that gives the intervals has ended, if that leaves less: it goes on for longer.
 fn nearer(model: &Model, estimates: &[Estimate], effort: &Effort) -> Result<Option<Model>, Error> {
     let ends = estimates
@@ -167,14 +186,21 @@ fn nearer(model: &Model, estimates: &[Estimate], effort: &Effort) -> Result<Opti
 }
 
 /// The values with which the model was found, coordinates `x`, as the machine file has them: the fit that gives the intervals may end
-/// beside them, and estimates the others beside the start value of one that is not identifiable. The intervals include both.
+/// beside them, and estimates the others beside the start value of one that is not identifiable. The intervals include those about
+/// both.
 fn as_in_model(estimates: &mut [Estimate], x: &[f64]) {
     for (estimate, x) in estimates.iter_mut().zip(x) {
-        estimate.value = estimate.parameter.value(*x);
-        if let Some([low, high]) = &mut estimate.interval {
-            *low = low.min(estimate.value);
-            *high = high.max(estimate.value);
+        let parameter = &estimate.parameter;
+        let moved = x - parameter.coordinate(estimate.value);
+        let [lowest, highest] = parameter.box_bounds();
+        let end = |end: f64, moved: f64| {
+            let x = parameter.coordinate(end) + moved;
+            parameter.value(x.clamp(lowest, highest))
+        };
+        if let Some([low, high]) = estimate.interval {
+            estimate.interval = Some([end(low, moved.min(0.0)), end(high, moved.max(0.0))]);
         }
+        estimate.value = parameter.value(*x);
     }
 }
 
@@ -199,8 +225,7 @@ struct Whole {
 
 fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Error> {
     let all = Amendment::all(problem)?;
-    let of_gas =
-        |amendment: &Amendment| amendment.effect().is_some_and(|effect| effect.is_of_gas());
+    let mut probabilities = Vec::new();
     let mut known: Vec<Amended> = Vec::new();
     let mut found: Vec<Found> = Vec::new();
     let mut others = all.clone();
@@ -208,7 +233,7 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
         (fitter.say)("looking at the pressures", f64::NAN);
         let (gas, forms): (Vec<Amendment>, _) = match has_joints(problem) {
             true => {
-                let of_gas = all.iter().filter(|one| of_gas(one));
+                let of_gas = all.iter().filter(|one| one.is_of_gas());
                 (of_gas.cloned().collect(), Forms::Free)
             }
             false => (all.clone(), Forms::UsualWhereTheySuffice),
@@ -219,6 +244,7 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
             return with_joints(fitter, problem, judged, &pressures);
         }
         found = judged.named_effects(&pressures);
+        probabilities = corrected(&judged);
         let values = judged.believed.values(&pressures);
         let set = judged.believed.set.iter().zip(values);
         known = set
@@ -270,10 +296,11 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
     if let Some(last) = found.last_mut() {
         last.after = Some(model.clone());
     }
+    probabilities.extend(corrected(&judged));
     Ok(Whole {
         baseline,
         refused: judged.refused(&with_gas),
-        probabilities: corrected(&judged),
+        probabilities,
         model,
         found,
     })
@@ -290,7 +317,10 @@ fn in_usual_forms(
     let count = known.len();
     let set = [known, believed.set.clone()].concat();
     let all = Hypothesis::new(set, believed.model.clone(), problem.parameters.len());
-    let mut all = all.of_usual_form(count, fitter, problem)?;
+    let mut all = match believed.view {
+        View::Lines => all.of_usual_form(count, fitter, problem)?,
+        View::Energies => all,
+    };
     all.set.truncate(count);
     Ok((all.set, all.model))
 }
@@ -380,6 +410,10 @@ fn corrections(estimates: &[Estimate], probabilities: &[(String, f64)]) -> Vec<C
             low: estimate.interval.map(|[low, _]| low),
             high: estimate.interval.map(|[_, high]| high),
             nominal: estimate.parameter.nominal,
+            unit: estimate
+                .parameter
+                .dimension
+                .map_or_else(String::new, |dimension| dimension.to_string()),
             probability: *probability,
         })
     };

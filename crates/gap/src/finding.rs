@@ -45,6 +45,9 @@ pub struct Correction {
     pub high: Option<f64>,
     /// What the data sheet states.
     pub nominal: f64,
+    /// The SI unit of these values; empty for a pure number.
+    #[serde(default)]
+    pub unit: String,
     /// Probability that it is wrong, 0 to 1.
     pub probability: f64,
 }

@@ -10,6 +10,7 @@ use crate::mains_hum::remove_hum;
 use crate::recorded::Recorded;
 use crate::results::{RESULTS, Results};
 use calibrate::bundle_replay::BundleReplay;
+use calibrate::observation::Observation;
 use calibrate::pressure_gap::pressure_gaps_of;
 use calibrate::sensors::{Fitted, Sensors};
 use calibrate::{Settings, compare_models, pictures, simulated_means, task};
@@ -19,6 +20,7 @@ use input::calibration::Calibration;
 use input::effects::Entry;
 use recordings::WholeFile;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Name of the explained machine.
@@ -86,7 +88,14 @@ pub fn into_folder(
         ("simulated", explained, after),
         ("baseline", baseline, before),
     ] {
-        let conditions = |run: &str| model.problem.conditions(run, &model.x);
+        let of_run = |run: &Observation| {
+            let conditions = model.problem.conditions(&run.id, &model.x)?;
+            Ok((run.id.clone(), conditions))
+        };
+        let of_runs = model.problem.runs.iter().map(of_run);
+        let of_runs: BTreeMap<String, Vec<(String, Value)>> =
+            of_runs.collect::<Result<_, Error>>()?;
+        let conditions = |run: &str| of_runs.get(run).cloned().unwrap_or_default();
         let (left_out, folder) = (&calibration.leave_out, out.join(folder));
         let replay = BundleReplay::prepare(&bundle, tree, conditions, left_out, &folder);
         replay.map_err(refused)?.write()?;

@@ -45,7 +45,7 @@ pub(crate) fn crank_angle_offset(
     let Some(without) = fitter.settled(&(problem, x))? else {
         return Ok(None);
     };
-    let probability = probability(left(&without, after), others, 1);
+    let probability = probability(left(&without.gap(), &after.gap()), others, 1);
     let evidence = evidence(&without, after);
     let found = finding(
         entry,
@@ -73,6 +73,7 @@ pub(crate) fn mains_hum(hum: &Hum, model: &Model) -> Option<Found> {
         misfit: [model.fitted; 2],
         heldout_misfit: model.held_out.map(|held_out| [held_out; 2]),
         timing: model.timing,
+        energies: None,
     };
     let (place, values) = (place.collect(), values.collect());
     Some(finding(entry, place, values, evidence, 1.0))

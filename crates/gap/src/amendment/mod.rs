@@ -60,6 +60,14 @@ impl Amendment {
         }
     }
 
+    /// Whether it is of the gas, which pressures show whatever the joints do.
+    pub(crate) fn is_of_gas(&self) -> bool {
+        match self {
+            Self::Effect(candidate) => candidate.is_of_gas(),
+            Self::Correction(path) => path.contains("cylinder."),
+        }
+    }
+
     /// The problem with it, its parameters free after those that were. Their coordinates are 0 at `values`, SI.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use crate::amendment::candidate::Candidate;
 use crate::criteria::{NAMED, Verdict};
-use crate::explain::Explanation;
+use crate::explain::{Explanation, by_energies};
 use crate::fitter::effort::Effort;
 use crate::recorded::Recorded;
 use calibrate::fit::Estimate;
@@ -26,6 +26,7 @@ pub(crate) fn notes(
 ) -> Vec<String> {
     let mut notes = shut_valve::sentences(recorded.shut_valves);
     notes.extend(unexplained(explanation));
+    notes.extend(heard(explanation));
     if effort.held_out.is_empty() && !explanation.found.is_empty() {
         notes.push(
             "No run was held out: there are too few. What was found has to hold in all of them at once; \
@@ -46,13 +47,29 @@ pub(crate) fn notes(
     let unidentifiable = explanation.estimates.iter();
     let unidentifiable = unidentifiable.filter(|e| e.interval.is_none());
     let unidentifiable: Vec<&str> = unidentifiable.map(|e| e.parameter.path.as_str()).collect();
-    if !unidentifiable.is_empty() {
+    if !unidentifiable.is_empty() && !by_energies(&explanation.found) {
         notes.push(format!(
             "Not identifiable from the recordings: {}.",
             unidentifiable.join(", ")
         ));
     }
     notes
+}
+
+/// By what was decided where no fit follows the ringing.
+fn heard(explanation: &Explanation) -> Option<String> {
+    let last = explanation.found.last()?;
+    let [before, after] = last.effect.evidence.energies?;
+    let held_out = before.held_out.zip(after.held_out);
+    let held_out = held_out.map_or(String::new(), |(before, after)| {
+        format!(" ({before:.2} to {after:.2} in held-out runs)")
+    });
+    Some(format!(
+        "No fit follows the ringing of the recordings, so that the gap, which compares its phases, hardly shrinks. What is named was \
+         found by how strongly the machine rings in each band of orders and sector of the revolution: what is left of that falls \
+         from {:.2} to {:.2}{held_out}, where 1 is what a law somewhat off leaves. Its values have no intervals for this reason.",
+        before.fitted, after.fitted,
+    ))
 }
 
 /// Why nothing is named although there is a gap.

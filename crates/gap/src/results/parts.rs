@@ -12,7 +12,7 @@
 
 use crate::amendment::candidate::Candidate;
 use crate::error::Error;
-use crate::explain::Explanation;
+use crate::explain::{Explanation, by_energies};
 use crate::finding::{Found, effects};
 use crate::model::Model;
 use calibrate::Parameter;
@@ -103,7 +103,11 @@ impl ByPart {
         let named = !explanation.found.is_empty();
         if named {
             let candidates = explanation.found.iter().map(Found::candidate);
-            let items = candidates.clone().map(|one| one.items().len()).sum();
+            // Where no fit follows the ringing, a step from there says nothing of a value.
+            let items = match by_energies(&explanation.found) {
+                true => 0,
+                false => candidates.clone().map(|one| one.items().len()).sum(),
+            };
             let labels = candidates.map(Candidate::label).collect();
             let models = [before, &explanation.explained];
             let parts = Self::compare(models, items, labels, held_out)?;

@@ -29,8 +29,8 @@ impl fmt::Display for Results {
                 "{} ({:.2}): {} in place of {}",
                 wrong.path,
                 wrong.probability,
-                number(wrong.value),
-                number(wrong.nominal)
+                quantity(wrong.value, &wrong.unit),
+                quantity(wrong.nominal, &wrong.unit)
             )?;
         }
         let gap = &self.gap;

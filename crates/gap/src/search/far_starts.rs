@@ -31,8 +31,8 @@ pub(crate) struct FarStart<'a> {
     pub followed: usize,
 }
 
-/// The starts that were searched longest, the most promising first: their indices, and where their searches have ended. The first
-/// `own` coordinates are the machine's.
+/// The starts, those that were searched longest first and the most promising of these before others: their indices, and where their
+/// searches have ended. The first `own` coordinates are the machine's.
 ///
 /// # Errors
 /// [`Error::Stopped`].
@@ -111,7 +111,6 @@ pub(crate) fn far_starts(
         searched.collect::<Result<(), Error>>()?;
         on.sort_by(|a, b| a.left.total_cmp(&b.left));
     }
-    searches.truncate(all.div_ceil(KEPT));
     let ends = searches.into_iter();
     Ok(ends.map(|search| (search.index, search.x)).collect())
 }
@@ -219,7 +218,7 @@ mod tests {
             (found, effort.journal.spent())
         };
         let (found, spent) = searched();
-        let [(1, x)] = &found[..] else {
+        let [(1, x), (0, _)] = &found[..] else {
             panic!("{found:?}");
         };
         let error = sets[1].0.parameters[1].value(x[1]);

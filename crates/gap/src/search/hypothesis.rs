@@ -1,12 +1,16 @@
 //! A set of amendments, and the machine that was fitted with them.
 
 use crate::amendment::Amendment;
-use crate::criteria::{freedom, nats};
+use crate::criteria::{freedom, nats, nats_of_energies};
 use crate::error::Error;
 use crate::finding::effects;
+use crate::fitter::effort::Effort;
 use crate::fitter::{Fitter, Start};
-use crate::model::Model;
+use crate::model::{Gap, Model};
 use calibrate::Problem;
+use calibrate::energies::Energies;
+use calibrate::likelihood::misfit;
+use calibrate::optimiser::LeastSquares;
 
 /// Nats that an amendment costs for being one of many that were tried.
 const CHOSEN: f64 = 4.0;
@@ -18,11 +22,24 @@ pub(crate) struct Amended {
     pub values: Vec<f64>,
 }
 
+/// What of the recordings a set is judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum View {
+    /// Their lines, with the phases of ringing.
+    Lines,
+    /// How strongly they ring in each band and sector.
+    Energies,
+}
+
 /// A set of amendments of a machine.
 #[derive(Clone, Debug)]
 pub(crate) struct Hypothesis {
     pub set: Vec<Amended>,
     pub model: Model,
+    /// What it is judged by.
+    pub view: View,
+    /// What it leaves of that.
+    pub gap: Gap,
     /// How unlikely it is with its prior, in nats.
     pub cost: f64,
 }
@@ -30,15 +47,34 @@ pub(crate) struct Hypothesis {
 impl Hypothesis {
     /// `own` is how many parameters the machine has without the set.
     pub fn new(set: Vec<Amended>, model: Model, own: usize) -> Self {
-        let parameters = model.x.len() - own;
-        let mut prior = freedom(&model.problem, parameters) + CHOSEN * set.len() as f64;
-        for (one, first) in set.iter().zip(firsts(&model.problem, &set, own)) {
-            prior += one.amendment.improbability(&model.problem, model.x[first]);
-        }
         Self {
-            cost: nats(&model) + prior,
+            view: View::Lines,
+            gap: model.gap(),
+            cost: nats(&model) + improbability(&set, &model, own),
             set,
             model,
+        }
+    }
+
+    /// The same judged by the energies of its machine, in which what is quieter than the noise of a revolution does not count.
+    pub fn by_energies(self, own: usize, effort: &Effort) -> Self {
+        let Model { problem, x, .. } = &self.model;
+        let leaves = |fitted: bool| {
+            let part = problem.with_runs(|run| effort.fits(&run.id) == fitted);
+            let residuals = (!part.runs.is_empty()).then(|| Energies::loud(&part).residuals(x));
+            residuals.unwrap_or_default()
+        };
+        let [fitted, held_out] = [true, false].map(leaves);
+        let gap = Gap {
+            fitted: misfit(&fitted),
+            held_out: (!held_out.is_empty()).then(|| misfit(&held_out)),
+        };
+        let nats = nats_of_energies(problem, misfit(&[fitted, held_out].concat()));
+        Self {
+            view: View::Energies,
+            gap,
+            cost: nats + improbability(&self.set, &self.model, own),
+            ..self
         }
     }
 
@@ -96,6 +132,9 @@ impl Hypothesis {
         fitter: &Fitter,
         problem: &Problem,
     ) -> Result<Self, Error> {
+        if self.view == View::Energies {
+            return Ok(self);
+        }
         let values = self.values(problem);
         let all = self.set.iter().zip(&values);
         let mut usual: Vec<_> = all
@@ -118,7 +157,7 @@ impl Hypothesis {
     /// # Errors
     /// A machine that cannot be simulated; [`Error::Stopped`].
     pub fn finished(self, fitter: &Fitter, problem: &Problem) -> Result<Self, Error> {
-        if self.set.is_empty() {
+        if self.set.is_empty() || self.view == View::Energies {
             return Ok(self);
         }
         let own = problem.parameters.len();
@@ -223,6 +262,16 @@ impl Hypothesis {
         });
         values.collect()
     }
+}
+
+/// What is against a set before the recordings are looked at, in nats: its freedom, and how far from what is usual it is.
+fn improbability(set: &[Amended], model: &Model, own: usize) -> f64 {
+    let mut prior =
+        freedom(&model.problem, model.x.len() - own) + CHOSEN * set.len() as f64;
+    for (one, first) in set.iter().zip(firsts(&model.problem, set, own)) {
+        prior += one.amendment.improbability(&model.problem, model.x[first]);
+    }
+    prior
 }
 
 /// The least costly set of each combination of kinds.

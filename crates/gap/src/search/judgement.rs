@@ -2,14 +2,16 @@
 //! might have been.
 
 use crate::amendment::Amendment;
-use crate::criteria::{NAMED, evidence, left, probability};
-use crate::error::Error;
+use crate::criteria::{Evidence, NAMED, evidence, left, probability};
+use crate::error::{Error, possible};
 use crate::finding::{Found, Tried};
 use crate::fitter::Fitter;
 use crate::recorded::is_of_pressures;
-use crate::search::hypothesis::{Amended, Hypothesis, of_kinds};
-use crate::search::{MOST, Search};
+use crate::model::Model;
+use crate::search::hypothesis::{Amended, Hypothesis, View, added, of_kinds};
+use crate::search::{MOST, Search, Sets};
 use calibrate::Problem;
+use calibrate::energies::TIMING;
 use calibrate::likelihood::Likelihood;
 use rayon::prelude::*;
 
@@ -73,9 +75,9 @@ pub(crate) fn judged(
         few: &few,
         amendments,
     };
-    let sets = search.sets(first)?;
+    let Sets { fitted, far } = search.sets(first)?;
     let chosen = (1..=MOST).flat_map(|count| {
-        let of_size = sets.iter().filter(move |set| set.set.len() == count);
+        let of_size = fitted.iter().filter(move |set| set.set.len() == count);
         of_kinds(of_size)
             .into_iter()
             .take(if count == 1 { SINGLES } else { LARGER })
@@ -86,29 +88,27 @@ pub(crate) fn judged(
         .into_par_iter()
         .map(|set| set.settled(fitter, problem));
     let settled = settled.collect::<Result<Vec<_>, Error>>()?;
-    let mut others: Vec<Hypothesis> = settled.into_iter().flatten().collect();
-    others.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let (mut believed, mut without) = (&nothing, &nothing);
-    for count in 1..=MOST {
-        let Some(best) = others.iter().find(|set| set.set.len() == count) else {
-            continue;
-        };
-        let others = believed.set.len();
-        let probable = probability(left(&believed.model, &best.model), others, count - others);
-        if probable > NAMED && best.cost < believed.cost && shows_in_each(believed, best)? {
-            (believed, without) = (best, believed);
-        }
+    let mut compared = Compared::new(nothing, settled.into_iter().flatten().collect());
+    let mut believed = compared.believed()?;
+    if believed.set.set.is_empty()
+        && let Some(by_energies) = by_energies(fitter, problem, far, &compared.nothing)?
+        && let found = by_energies.believed()?
+        && !found.set.set.is_empty()
+    {
+        (compared, believed) = (by_energies, found);
     }
-    let believed = match forms {
-        Forms::Free => believed.clone(),
+    let Believed { set, without } = believed;
+    let set = match forms {
+        Forms::Free => set,
         Forms::UsualWhereTheySuffice => {
-            let count = believed.set.len();
-            believed.clone().of_usual_form(count, fitter, problem)?
+            let count = set.set.len();
+            set.of_usual_form(count, fitter, problem)?
         }
     };
-    let believed = believed.finished(fitter, problem)?;
+    let believed = set.finished(fitter, problem)?;
     let (before, added) = (without.set.len(), believed.set.len() - without.set.len());
-    let sure = probability(left(&without.model, &believed.model), before, added);
+    let sure = probability(left(&without.gap, &believed.gap), before, added);
+    let Compared { nothing, others } = compared;
     let probabilities = (0..believed.set.len()).map(|i| {
         let rivals = rivals(&believed, i, &others).map(|rival| (believed.cost - rival.cost).exp());
         sure / (1.0 + rivals.sum::<f64>())
@@ -119,6 +119,78 @@ pub(crate) fn judged(
         believed,
         others,
     })
+}
+
+/// Sets that are judged by the same view of the recordings.
+struct Compared {
+    /// The machine without amendments.
+    nothing: Hypothesis,
+    /// Sets with some, the least costly first.
+    others: Vec<Hypothesis>,
+}
+
+/// A set that is believed, and the one that was believed before its last amendments.
+struct Believed {
+    set: Hypothesis,
+    without: Hypothesis,
+}
+
+impl Compared {
+    fn new(nothing: Hypothesis, mut others: Vec<Hypothesis>) -> Self {
+        others.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        Self { nothing, others }
+    }
+
+    /// The largest set that is more probable than not.
+    fn believed(&self) -> Result<Believed, Error> {
+        let (mut set, mut without) = (&self.nothing, &self.nothing);
+        for count in 1..=MOST {
+            let Some(best) = self.others.iter().find(|other| other.set.len() == count) else {
+                continue;
+            };
+            let others = set.set.len();
+            let probable = probability(left(&set.gap, &best.gap), others, count - others);
+            if probable > NAMED && best.cost < set.cost && shows_in_each(set, best)? {
+                (set, without) = (best, set);
+            }
+        }
+        Ok(Believed {
+            set: set.clone(),
+            without: without.clone(),
+        })
+    }
+}
+
+/// The machines of the lowest energies, judged by these: where no fit follows the ringing of any set, what lines leave says nothing
+/// of them. None where sets were not searched far away.
+fn by_energies(
+    fitter: &Fitter,
+    problem: &Problem,
+    far: Vec<Hypothesis>,
+    nothing: &Hypothesis,
+) -> Result<Option<Compared>, Error> {
+    let (effort, own) = (fitter.effort, problem.parameters.len());
+    let judged = far.into_iter().map(|far| {
+        let with = added(problem, &far.set)?;
+        let model = possible(Model::at(with, &far.model.x, TIMING, effort))?;
+        let judged = model.map(|model| Hypothesis::new(far.set, model, own));
+        Ok(judged.map(|one| one.by_energies(own, effort)))
+    });
+    let judged = judged.collect::<Result<Vec<_>, Error>>()?;
+    let (without, others): (Vec<_>, Vec<_>) = judged
+        .into_iter()
+        .flatten()
+        .partition(|one| one.set.is_empty());
+    let as_fitted = nothing.clone().by_energies(own, effort);
+    let lowest = without
+        .into_iter()
+        .fold(as_fitted, |a, b| if b.cost < a.cost { b } else { a });
+    // The machine is the one whose lines were fitted: its gap is the one that is shown.
+    let nothing = Hypothesis {
+        model: nothing.model.clone(),
+        ..lowest
+    };
+    Ok((!others.is_empty()).then(|| Compared::new(nothing, others)))
 }
 
 /// The machine without amendments, calibrated to all runs.
@@ -162,6 +234,19 @@ fn rivals<'a>(
 }
 
 impl Judgement {
+    /// What speaks for a set.
+    fn evidence(&self, set: &Hypothesis) -> Evidence {
+        let by_lines = evidence(&self.nothing.model, &set.model);
+        match set.view {
+            View::Lines => by_lines,
+            View::Energies => Evidence {
+                log_odds: self.nothing.cost - set.cost,
+                energies: Some([self.nothing.gap, set.gap]),
+                ..by_lines
+            },
+        }
+    }
+
     /// The effects that are believed, with their rivals. `problem` is the machine without them.
     pub fn named_effects(&self, problem: &Problem) -> Vec<Found> {
         let values = self.believed.values(problem);
@@ -178,7 +263,7 @@ impl Judgement {
                 effect: Tried {
                     candidate,
                     values,
-                    evidence: evidence(&self.nothing.model, &self.believed.model),
+                    evidence: self.evidence(&self.believed),
                     probability: *probability,
                     model: Some(self.believed.model.clone()),
                 },
@@ -207,7 +292,7 @@ impl Judgement {
             Some(Tried {
                 candidate: one.amendment.effect()?.clone(),
                 values,
-                evidence: evidence(&self.nothing.model, &rival.model),
+                evidence: self.evidence(rival),
                 probability,
                 model: Some(rival.model.clone()),
             })
@@ -227,8 +312,8 @@ impl Judgement {
             Some(Tried {
                 candidate: set.set[0].amendment.effect()?.clone(),
                 values,
-                evidence: evidence(&self.nothing.model, &set.model),
-                probability: probability(left(&self.nothing.model, &set.model), 0, 1) * share,
+                evidence: self.evidence(set),
+                probability: probability(left(&self.nothing.gap, &set.gap), 0, 1) * share,
                 model: Some(set.model.clone()),
             })
         });

@@ -24,6 +24,7 @@ use crate::search::far_starts::{FarStart, far_starts};
 use crate::search::hypothesis::{Hypothesis, added, of_kinds};
 use crate::search::screen::{Screened, screen};
 use crate::search::trial::{Trial, is_at_noise, likelier, settled, trials};
+use calibrate::cloud_descent::KEPT;
 use calibrate::energies::TIMING;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -58,13 +59,13 @@ pub(crate) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// All sets that were fitted, the least costly first; `nothing` is the empty one. The search ends where the best of
-    /// them explains the recordings.
+    /// All sets that were fitted; `nothing` is the empty one. The search ends where the best of them explains the recordings.
     ///
     /// # Errors
     /// [`Error::Stopped`].
-    pub fn sets(&self, nothing: Hypothesis) -> Result<Vec<Hypothesis>, Error> {
+    pub fn sets(&self, nothing: Hypothesis) -> Result<Sets, Error> {
         let mut nodes = vec![nothing.clone()];
+        let mut far: Vec<Hypothesis> = Vec::new();
         let mut lowest: Vec<Hypothesis> = Vec::new();
         let mut expanded: Vec<Vec<String>> = Vec::new();
         for round in 0..ROUNDS {
@@ -73,15 +74,16 @@ impl Search<'_> {
             }
             let beam = beam(&nodes, &lowest, &expanded);
             expanded.extend(beam.iter().map(Hypothesis::labels));
-            let beside = self.beside(&beam, &nothing.model)?;
+            let beside = self.beside(&beam, &nothing)?;
             for set in beside.fitted {
                 add(&mut nodes, set);
             }
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-            lowest = match leaves_little(&nothing.model, &nodes[0]) {
+            lowest = match leaves_little(&nothing, &nodes[0]) {
                 true => Vec::new(),
-                false => beside.lowest,
+                false => amended(&beside.far),
             };
+            far.extend(beside.far);
             let is_last = round + 1 == ROUNDS || !self.fitter.effort.goes_on();
             // What is looked at further is none of the nodes then.
             if !lowest.is_empty() && !is_last {
@@ -95,7 +97,7 @@ impl Search<'_> {
                 nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
             }
         }
-        Ok(nodes)
+        Ok(Sets { fitted: nodes, far })
     }
 
     /// The node with one of its amendments at one place alone, as what acts at two places imitates what acts at one; with
@@ -148,7 +150,7 @@ impl Search<'_> {
 
     /// The sets of these nodes with each of the most promising other amendments; `nothing` is the machine without any. Where none
     /// of them leaves little, they are fitted from far away, too.
-    fn beside(&self, beam: &[Hypothesis], nothing: &Model) -> Result<Beside, Error> {
+    fn beside(&self, beam: &[Hypothesis], nothing: &Hypothesis) -> Result<Sets, Error> {
         let alone = beam.iter().all(|node| node.set.is_empty());
         let so_far = beam.first().map_or(f64::NAN, |best| best.model.fitted);
         let mut of_each = Vec::new();
@@ -170,17 +172,22 @@ impl Search<'_> {
         rough.sort_by(|a, b| a[0].deviance.total_cmp(&b[0].deviance));
         let count = if alone { REFINED } else { REFINED_BESIDE };
         let mut fitted = self.refined(&rough[..count.min(rough.len())], so_far)?;
-        let mut lowest = Vec::new();
+        let mut far = Vec::new();
         let of_pressures = is_of_pressures(&self.few.different);
         let goes_on = self.fitter.effort.goes_on() && !of_pressures;
         if goes_on && !fitted.iter().any(|set| leaves_little(nothing, set)) {
             (self.fitter.say)("searching far away", so_far);
             rough.truncate(TRIED);
-            let first: Vec<&Trial> = rough.iter().filter_map(|forms| forms.first()).collect();
-            lowest = self.far_away(&first)?;
-            fitted.extend(self.descended(&lowest)?);
+            let mut first: Vec<&Trial> = rough.iter().filter_map(|forms| forms.first()).collect();
+            // What energies leave without an effect is what they are judged beside.
+            let nothing = Trial::of_nothing(&self.few.different);
+            if alone {
+                first.push(&nothing);
+            }
+            far = self.far_away(&first)?;
+            fitted.extend(self.descended(&amended(&far))?);
         }
-        Ok(Beside { fitted, lowest })
+        Ok(Sets { fitted, far })
     }
 
     /// These sets fitted from where rough descents of the forms of their last law have led, and where that leaves more than noise in the
@@ -215,12 +222,16 @@ impl Search<'_> {
         Ok(fitted.into_iter().flatten().collect())
     }
 
-    /// The machines of those of these trials whose energies are the lowest, however far away that is. What rough descents
-    /// left of them does not count: it is the ringing in which they ended.
+    /// The machines of those of these trials whose energies are the lowest, however far away that is, the lowest first, and that to which
+    /// nothing is added. What rough descents left of them does not count: it is the ringing in which they ended.
     fn far_away(&self, trials: &[&Trial]) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.different.parameters.len();
         let starts: Vec<FarStart> = trials.iter().map(|trial| trial.far()).collect();
         let far = far_starts(self.fitter, &starts, own)?.into_iter();
+        let kept = starts.len().div_ceil(KEPT);
+        let far = far.enumerate().filter_map(|(rank, (index, x))| {
+            (rank < kept || trials[index].set.is_empty()).then_some((index, x))
+        });
         let machines = far.map(|(index, x)| {
             let Trial { set, start, .. } = trials[index];
             let at = Model::at(start.0.clone(), &x, TIMING, self.fitter.effort);
@@ -246,8 +257,14 @@ impl Search<'_> {
 }
 
 /// Whether a set leaves no more than what the law of the right effect may be off by.
-fn leaves_little(nothing: &Model, set: &Hypothesis) -> bool {
-    left(nothing, &set.model) < LITTLE
+fn leaves_little(nothing: &Hypothesis, set: &Hypothesis) -> bool {
+    left(&nothing.gap, &set.gap) < LITTLE
+}
+
+/// Those of these sets that are not empty.
+fn amended(sets: &[Hypothesis]) -> Vec<Hypothesis> {
+    let amended = sets.iter().filter(|set| !set.set.is_empty());
+    amended.cloned().collect()
 }
 
 /// The nodes to look at further: the first of different kinds that were not. Where none that was `fitted` leaves little, what is
@@ -314,12 +331,13 @@ fn as_given((problem, x): &Start, own: usize) -> Start {
     (problem.clone(), x)
 }
 
-/// What was found beside nodes.
-struct Beside {
+/// What was found.
+pub(crate) struct Sets {
     /// Sets that were fitted.
-    fitted: Vec<Hypothesis>,
-    /// Where sets were searched far away, the machines in which their energies are the lowest, the lowest first.
-    lowest: Vec<Hypothesis>,
+    pub fitted: Vec<Hypothesis>,
+    /// Where sets were searched far away, the machines in which their energies are the lowest, the lowest first, and that of
+    /// the empty set.
+    pub far: Vec<Hypothesis>,
 }
 
 fn words(node: &Hypothesis, what: &str) -> String {

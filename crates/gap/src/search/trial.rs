@@ -20,11 +20,22 @@ pub(crate) struct Trial {
 }
 
 impl Trial {
+    /// A machine to which nothing is added.
+    pub fn of_nothing(problem: &Problem) -> Self {
+        let x = vec![0.0; problem.parameters.len()];
+        Self {
+            set: Vec::new(),
+            start: (problem.clone(), x.clone()),
+            node: x,
+            deviance: f64::INFINITY,
+        }
+    }
+
     /// From where it is searched far away. What the node has was searched before; but where that is nothing, the values with which the
     /// machine fits belong to a wrong ringing, and those that were given count.
     pub fn far(&self) -> FarStart<'_> {
         let (problem, x) = &self.start;
-        let alone = self.set.len() == 1;
+        let alone = self.set.len() <= 1;
         let mut x = x.clone();
         for (x, node) in x.iter_mut().zip(&self.node) {
             *x = if alone { 0.0 } else { *node };
