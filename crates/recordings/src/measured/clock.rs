@@ -1,5 +1,6 @@
 //! A column of time: the sample rate that follows from it, and where samples are missing.
 
+use super::stated::StatedRate;
 use crate::Error;
 use std::path::Path;
 
@@ -36,8 +37,9 @@ impl Clock {
         path: &Path,
         column: TimeColumn,
         times: &[f64],
-        stated_hz: Option<f64>,
+        stated: Option<&StatedRate>,
     ) -> Result<Self, Error> {
+        let stated_hz = stated.map(|stated| stated.hz);
         let refuse = |reason: String| Err(Error::time(path, &column.name, reason));
         if let Some(sample) = times.iter().position(|t| !t.is_finite()) {
             return refuse(format!("sample {sample} has no time"));
@@ -79,18 +81,21 @@ impl Clock {
         if !(found_hz.is_finite() && found_hz > 0.0) {
             return refuse(format!("the times are steps of {found:e} s"));
         }
-        if let Some(stated) = stated_hz
-            && !agree(stated, found_hz)
-        {
-            return refuse(format!(
-                "the times are those of {found_hz:.6} Hz, but the sample rate is said to be {stated} Hz"
-            ));
+        let Some(stated) = stated else {
+            return Ok(Self::of_step(column, 1.0 / found_hz, 0.0));
+        };
+        if !agree(stated.hz, found_hz) {
+            let says = match &stated.heading {
+                None => format!("the sample rate is said to be {} Hz", stated.hz),
+                Some(place) => format!("{place}, says {} Hz: state the sample rate that is right", stated.hz),
+            };
+            return refuse(format!("the times are those of {found_hz:.6} Hz, but {says}"));
         }
-        Ok(Self::of_step(
-            column,
-            1.0 / stated_hz.unwrap_or(found_hz),
-            0.0,
-        ))
+        let hz = match stated.heading {
+            None => stated.hz,
+            Some(_) => found_hz,
+        };
+        Ok(Self::of_step(column, 1.0 / hz, 0.0))
     }
 
     fn of_step(column: TimeColumn, step_s: f64, rounding_s: f64) -> Self {
@@ -194,7 +199,8 @@ mod tests {
             seconds_per_unit: 1.0,
             single_precision: false,
         };
-        Clock::new(Path::new("a.csv"), column, times, stated)
+        let stated = stated.map(StatedRate::number);
+        Clock::new(Path::new("a.csv"), column, times, stated.as_ref())
     }
 
     fn times(rate: f64, count: usize) -> Vec<f64> {

@@ -26,7 +26,7 @@ pub use windows::{Length, Window, Windows};
 
 pub(crate) use clock::{TimeColumn, agree};
 pub(crate) use names::{is_unit, name_and_unit, seconds_of_unit, seconds_per_unit};
-pub(crate) use stated::{is_sample_rate, is_speed, speed_label};
+pub(crate) use stated::{PERIODS, RATES, StatedRate, is_sample_rate, is_speed, only_rate, speed_label};
 
 use crate::{Column, Error, Value};
 use clock::Clock;
@@ -82,6 +82,7 @@ pub struct Recording {
     path: PathBuf,
     labels: Vec<Value>,
     sample_rate_hz: Option<f64>,
+    unclear_rate: Option<String>,
     start_s: Option<f64>,
     clock: Option<Clock>,
     samples: Box<dyn Samples>,
@@ -180,10 +181,11 @@ impl Recording {
         path: &Path,
         labels: Vec<Value>,
         channels: usize,
-        stated_hz: Option<f64>,
+        stated: Option<StatedRate>,
         time: Option<TimeColumn>,
         samples: impl Samples + 'static,
     ) -> Result<Self, Error> {
+        let stated_hz = stated.as_ref().map(|stated| stated.hz);
         if let Some(rate) = stated_hz
             && !(rate.is_finite() && rate > 0.0)
         {
@@ -193,6 +195,7 @@ impl Recording {
             path: path.to_owned(),
             labels,
             sample_rate_hz: stated_hz,
+            unclear_rate: None,
             start_s: None,
             clock: None,
             samples: Box::new(samples),
@@ -214,7 +217,7 @@ impl Recording {
             }
             let first = recording.times[0] * time.seconds_per_unit;
             recording.start_s = Some(recording.samples.origin_s() + first);
-            let clock = Clock::new(path, time, &recording.times, stated_hz)?;
+            let clock = Clock::new(path, time, &recording.times, stated.as_ref())?;
             recording.sample_rate_hz = Some(clock.sample_rate_hz());
             recording.clock = Some(clock);
         }
@@ -229,6 +232,16 @@ impl Recording {
     /// Samples per second, if the file or its reader knows it.
     pub fn sample_rate_hz(&self) -> Option<f64> {
         self.sample_rate_hz
+    }
+
+    /// The same, with what stands in the file about a sample rate and is not understood.
+    pub(crate) fn with_unclear_rate(self, unclear_rate: Option<String>) -> Self {
+        Self { unclear_rate, ..self }
+    }
+
+    /// What stands in the file about a sample rate and is not understood: its place, and why.
+    pub fn unclear_rate(&self) -> Option<&str> {
+        self.unclear_rate.as_deref()
     }
 
     /// Time of the first sample by the file's column of time, s: since 1970 where it holds dates, since midnight where
@@ -342,14 +355,14 @@ pub(crate) fn one_rate(
     path: &Path,
     of_file: Option<f64>,
     options: &Options,
-) -> Result<Option<f64>, Error> {
+) -> Result<Option<StatedRate>, Error> {
     match (of_file, options.sample_rate_hz) {
         (Some(file), Some(stated)) if !agree(file, stated) => Err(Error::RateContradicts {
             path: path.to_owned(),
             file_hz: file,
             stated_hz: stated,
         }),
-        (file, stated) => Ok(stated.or(file)),
+        (file, stated) => Ok(stated.or(file).map(StatedRate::number)),
     }
 }
 

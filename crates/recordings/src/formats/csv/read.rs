@@ -1,7 +1,7 @@
 //! Columns of numbers from CSV, a line at a time.
 //!
 //! - The columns are separated by commas, semicolons or tabs. Where commas do not separate, they may be the decimal
-//!   sign.
+//!   sign. A table whose numbers have both signs is refused, because one of them may set thousands apart.
 //! - The line before the first row has their names, with the unit in brackets or at the end (`acc [m/s^2]`, `acc_m_s2`), or in
 //!   a line of its own between. A file without names has the columns `column_1`, `column_2`, ... What a data logger writes
 //!   before is skipped but for the sample rate.
@@ -17,7 +17,7 @@ use super::heading::Heading;
 use super::lines::Lines;
 use crate::Error;
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, is_unit, name_and_unit,
+    MeasuredChannel, MeasuredFile, Options, Recording, Samples, StatedRate, TimeColumn, is_unit, name_and_unit,
     seconds_of_unit, seconds_per_unit, selected,
 };
 use std::path::Path;
@@ -40,6 +40,16 @@ struct CsvSamples {
     day: i64,
     /// The first of the dates, ns.
     start: Option<i64>,
+    /// The first number with a decimal sign.
+    decimal: Option<Decimal>,
+}
+
+/// A number with a decimal sign, and where it stands.
+struct Decimal {
+    sign: u8,
+    line: u64,
+    column: usize,
+    number: String,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +67,8 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
         lines,
         separator,
         names,
-        sample_rate_hz,
+        sample_rate,
+        unclear_rate,
     } = Heading::read(path, options.skipped_lines)?;
     if names.len() > MOST_COLUMNS {
         return Err(damaged(path, format!("it has {} columns", names.len())));
@@ -95,9 +106,8 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     for (channel, &i) in wanted.iter().enumerate() {
         targets[candidates[i]] = Target::Channel(channel);
     }
-    let stated = options
-        .sample_rate_hz
-        .or(sample_rate_hz.filter(|_| time.is_none()));
+    let said = options.sample_rate_hz.map(StatedRate::number);
+    let stated = said.or(sample_rate);
     let time = time.map(|(i, time)| {
         let (target, seconds_per_unit) = match time {
             Time::Number(seconds) => (Target::Time, seconds),
@@ -125,10 +135,12 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
         empty: 0,
         day: 0,
         start: None,
+        decimal: None,
     };
     let count = channels.len();
     MeasuredFile::of_one(channels, Vec::new(), |labels| {
-        Recording::new(path, labels, count, stated, time, samples)
+        let recording = Recording::new(path, labels, count, stated, time, samples)?;
+        Ok(recording.with_unclear_rate(unclear_rate))
     })
 }
 
@@ -195,6 +207,33 @@ fn seconds(day: i64, cell: &[u8], start: &mut Option<i64>) -> Option<f64> {
     Some(at.checked_sub(start)? as f64 * 1e-9)
 }
 
+/// That all numbers have one decimal sign, where commas do not separate the cells. `place` is the line, the column and the
+/// separator.
+fn one_sign(first: &mut Option<Decimal>, cell: &[u8], place: (u64, usize, u8), names: &[String]) -> Result<(), String> {
+    let (line, column, separator) = place;
+    let sign = cell.iter().copied().find(|byte| b".,".contains(byte));
+    let Some(sign) = sign.filter(|_| separator != b',') else {
+        return Ok(());
+    };
+    match first {
+        Some(first) if first.sign != sign => Err(format!(
+            "line {line}, column `{}`: found `{}`, but `{}` in line {}, column `{}`: one of `,` and `.` may set thousands \
+             apart; write all numbers with the same decimal sign and no sign between thousands",
+            names[column],
+            String::from_utf8_lossy(cell),
+            first.number,
+            first.line,
+            names[first.column]
+        )),
+        Some(_) => Ok(()),
+        None => {
+            let number = String::from_utf8_lossy(cell).into_owned();
+            *first = Some(Decimal { sign, line, column, number });
+            Ok(())
+        }
+    }
+}
+
 impl CsvSamples {
     /// The first date, s.
     fn first_date_s(&self) -> f64 {
@@ -220,6 +259,11 @@ impl CsvSamples {
             let Some(number) = number else {
                 return Err(not_a(target, &self.lines, &self.names[found - 1], cell));
             };
+            if matches!(target, Target::Time | Target::Channel(_)) {
+                let path = &self.lines.path;
+                let place = (self.lines.number, found - 1, self.separator);
+                one_sign(&mut self.decimal, cell, place, &self.names).map_err(|reason| damaged(path, reason))?;
+            }
             match target {
                 Target::Time | Target::Date => times.push(number),
                 Target::Channel(channel) => channels[channel].push(number as f32),

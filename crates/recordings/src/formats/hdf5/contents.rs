@@ -138,17 +138,28 @@ impl Contents {
 
     /// The number called so that counts for the array at `path`: the nearest outwards, or else the only one that the file has.
     pub(super) fn stated(&self, path: &str, is_called: impl Fn(&str) -> bool) -> Option<f64> {
-        let called = self.stated.iter().filter(|stated| is_called(&stated.name));
-        let around = called.clone().filter(|stated| {
-            let rest = path.strip_prefix(stated.place.as_str());
-            stated.place.is_empty() || rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
-        });
-        if let Some(nearest) = around.max_by_key(|stated| stated.place.len()) {
-            return Some(nearest.value);
+        if let Some((_, value)) = self.nearest(path, &is_called).first() {
+            return Some(*value);
         }
+        let called = self.stated.iter().filter(|stated| is_called(&stated.name));
         let mut values = called.map(|stated| stated.value);
         let first = values.next()?;
         values.all(|value| value == first).then_some(first)
+    }
+}
+
+impl Contents {
+    /// The numbers called so, by name, in the innermost place around the array at `path` that has any.
+    pub(super) fn nearest(&self, path: &str, is_called: impl Fn(&str) -> bool) -> Vec<(&str, f64)> {
+        let called = self.stated.iter().filter(|stated| is_called(&stated.name));
+        let around = called.filter(|stated| {
+            let rest = path.strip_prefix(stated.place.as_str());
+            stated.place.is_empty() || rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        });
+        let around: Vec<&Stated> = around.collect();
+        let innermost = around.iter().map(|stated| stated.place.len()).max();
+        let nearest = around.iter().filter(|stated| Some(stated.place.len()) == innermost);
+        nearest.map(|stated| (stated.name.as_str(), stated.value)).collect()
     }
 }
 

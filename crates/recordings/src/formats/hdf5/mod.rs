@@ -15,7 +15,7 @@ use super::guarded::guarded;
 use super::recording_format::{RecordingFormat, has};
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, TimeColumn, agree, is_sample_rate, is_speed,
-    name_and_unit, one_length, one_rate, seconds_per_unit, selected, speed_label,
+    name_and_unit, one_length, one_rate, only_rate, seconds_per_unit, selected, speed_label,
 };
 use crate::{Error, measured::expansion};
 use contents::{Array, Contents};
@@ -144,6 +144,10 @@ fn nearest_time<'a>(
 
 /// The sample rate that the file states for all of these arrays.
 fn stated_rate(path: &Path, contents: &Contents, arrays: &[&Array]) -> Result<Option<f64>, Error> {
+    for array in arrays {
+        let nearest = contents.nearest(&array.path, is_sample_rate);
+        only_rate(&nearest).map_err(|reason| damaged(path, reason))?;
+    }
     let rate = |array: &&Array| contents.stated(&array.path, is_sample_rate);
     let first = rate(&arrays[0]);
     let other = arrays.iter().find(|array| match (first, rate(array)) {

@@ -2,6 +2,7 @@
 
 mod damaged;
 mod hdf5;
+mod stated_rate;
 
 use recordings::formats::{csv, mcap, parquet};
 use recordings::measured::{Length, MeasuredFile, Options, Recording, Windows};
@@ -208,6 +209,19 @@ fn csv_columns_that_cannot_be_what_they_are_called() {
     assert_eq!(channels.keys().collect::<Vec<_>>(), ["acc"]);
 }
 
+#[test]
+fn csv_numbers_with_two_decimal_signs_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    fs::write(&path, "t_s;p [Pa]\n0;200000\n0.001;200,037\n0.002;200,040\n").unwrap();
+    let error = message(&path, &Options::default());
+    let expected = "line 3, column `p [Pa]`: found `200,037`, but `0.001` in line 3, column `t_s`";
+    assert!(error.contains(expected), "{error}");
+    // A date may have points.
+    fs::write(&path, "when;p\n01.01.2026 00:00:00.0;1,5\n01.01.2026 00:00:00.1;2,5\n").unwrap();
+    assert_eq!(read(&path, &Options::default()).0["p"], [1.5, 2.5]);
+}
+
 /// As data loggers write them: what they say of themselves first, units in a line of their own, dates for times.
 #[test]
 fn csv_as_loggers_write_it() {
@@ -324,6 +338,24 @@ fn big_endian_mat(rows: u32, columns: u32, numbers: &[f64]) -> Vec<u8> {
     file.extend(14_u32.to_be_bytes());
     file.extend((body.len() as u32).to_be_bytes());
     file.extend(body);
+    file
+}
+
+/// Variables of float64 in a MAT file, big-endian, each a column.
+fn big_endian_variables(variables: &[(&str, &[f64])]) -> Vec<u8> {
+    let mut file = vec![b' '; 124];
+    file.extend(b"\x01\0MI");
+    for (name, numbers) in variables {
+        let mut body = Vec::new();
+        let mut words = |words: &[u32]| body.extend(words.iter().flat_map(|w| w.to_be_bytes()));
+        words(&[6, 8, 6, 0, 5, 8, numbers.len() as u32, 1, 1, name.len() as u32]);
+        body.extend(name.bytes());
+        body.resize(body.len().next_multiple_of(8), 0);
+        body.extend([9, 8 * numbers.len() as u32].iter().flat_map(|w| w.to_be_bytes()));
+        body.extend(numbers.iter().flat_map(|x| x.to_be_bytes()));
+        file.extend([14, body.len() as u32].iter().flat_map(|w| w.to_be_bytes()));
+        file.extend(body);
+    }
     file
 }
 
