@@ -1,6 +1,7 @@
 //! The arrays of a file, and the numbers that it states beside them.
 
 use super::numbers::{Number, numbers};
+use super::packing::Packing;
 use hdf5_reader::error::Result;
 use hdf5_reader::group::Group;
 use hdf5_reader::{Attribute, Dataset, Hdf5File, SliceInfo};
@@ -26,6 +27,8 @@ pub(super) struct Array {
     /// The axis of the channels; none of a vector.
     pub(super) channel_axis: Option<usize>,
     pub(super) unit: Option<String>,
+    /// How its numbers stand for its values, or why that is not understood.
+    pub(super) packing: std::result::Result<Packing, String>,
 }
 
 /// A number beside the samples.
@@ -106,10 +109,13 @@ impl Contents {
         if dataset.shape().iter().all(|length| *length == 1) {
             let all = SliceInfo::all(dataset.ndim());
             let value = numbers(&dataset, number, &all)?;
+            let Ok(packing) = Packing::of(&attributes) else {
+                return Ok(());
+            };
             self.stated.push(Stated {
                 place: group.to_owned(),
                 name: dataset.name().rsplit('/').next().unwrap_or_default().to_owned(),
-                value: value[0],
+                value: packing.value(value[0]),
             });
             return Ok(());
         }
@@ -132,6 +138,7 @@ impl Contents {
             channels: channels as usize,
             channel_axis,
             unit,
+            packing: Packing::of(&attributes),
         });
         Ok(())
     }

@@ -5,10 +5,13 @@
 //! - Its unit is the attribute `units` or `unit`.
 //! - A number, as a dataset or an attribute, is the sample rate or the speed as in a MAT file. The one that stands nearest to a
 //!   channel counts: its own attribute, then what its group has, and so on outwards.
+//! - Packed numbers become values by the attributes `scale_factor` and `add_offset`; `_FillValue` and `missing_value` are missing
+//!   samples.
 //! - Text, enumerations, compounds and arrays of more axes are left out. Links to other files are not followed.
 
 mod contents;
 mod numbers;
+mod packing;
 mod samples;
 
 use super::guarded::guarded;
@@ -82,8 +85,8 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     });
     let samples = Hdf5Samples {
         path: path.to_owned(),
-        time: time.map(|i| Reader::new(places[i].0, vec![places[i].1])),
-        channels: Reader::of_channels(wanted.iter().map(|&i| places[i])),
+        time: time.map(|i| Reader::new(path, places[i].0, vec![places[i].1])).transpose()?,
+        channels: Reader::of_channels(path, wanted.iter().map(|&i| places[i]))?,
         at: 0,
         length,
     };
