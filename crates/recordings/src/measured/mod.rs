@@ -6,7 +6,7 @@
 //! its samples in blocks, and [`Windows`] cuts these into windows. Memory is that of a block and of
 //! a window, for a file of any length.
 //!
-//! Samples become float32. A cell without a number becomes NaN, which the caller has to handle:
+//! Samples become float32. A cell without a number, and an infinite one, becomes NaN, which the caller has to handle:
 //! [`Windows::bridging`] bridges short gaps and splits at long ones.
 
 mod blanks;
@@ -118,6 +118,11 @@ pub(crate) trait Samples: Send {
     fn origin_s(&self) -> f64 {
         0.0
     }
+
+    /// The line of the file in which a sample stands that was read last, where the format has lines.
+    fn line(&self, _sample: u64) -> Option<u64> {
+        None
+    }
 }
 
 impl MeasuredFile {
@@ -217,7 +222,8 @@ impl Recording {
             }
             let first = recording.times[0] * time.seconds_per_unit;
             recording.start_s = Some(recording.samples.origin_s() + first);
-            let clock = Clock::new(path, time, &recording.times, stated.as_ref())?;
+            let place = |sample| place(&*recording.samples, sample);
+            let clock = Clock::new(path, time, &recording.times, stated.as_ref(), &place)?;
             recording.sample_rate_hz = Some(clock.sample_rate_hz());
             recording.clock = Some(clock);
         }
@@ -300,7 +306,11 @@ impl Recording {
 
     /// Decodes at most `most` samples, and says how many there were.
     fn decode(&mut self, most: usize) -> Result<usize, Error> {
+        let before = self.decoded();
         let read = self.samples.read(most, &mut self.times, &mut self.block)?;
+        for channel in &mut self.block {
+            missing_where_infinite(&mut channel[before..]);
+        }
         let numbers = read.saturating_mul(self.block.len().max(1));
         let taken = self.expansion.take(numbers);
         taken.map_err(|reason| Error::damaged("a recording", &self.path, reason))?;
@@ -314,10 +324,11 @@ impl Recording {
         let Some(clock) = &mut self.clock else {
             return Ok((end, None, None));
         };
+        let place = |sample| place(&*self.samples, sample);
         let mut before = passed;
         let first = self.next + usize::from(passed.is_some());
         for i in first..end {
-            if let Some(gap) = clock.tick(&self.path, self.times[i])? {
+            if let Some(gap) = clock.tick(&self.path, self.times[i], &place)? {
                 if i == self.next {
                     before = Some(gap);
                 } else {
@@ -326,6 +337,21 @@ impl Recording {
             }
         }
         Ok((end, before, None))
+    }
+}
+
+/// Where a sample stands in its file.
+fn place(samples: &dyn Samples, sample: u64) -> String {
+    match samples.line(sample) {
+        Some(line) => format!("line {line}"),
+        None => format!("sample {sample}"),
+    }
+}
+
+/// Samples beyond all numbers of float32 are no measurements: they become NaN, missing ones.
+fn missing_where_infinite(samples: &mut [f32]) {
+    for sample in samples.iter_mut().filter(|sample| sample.is_infinite()) {
+        *sample = f32::NAN;
     }
 }
 

@@ -34,7 +34,7 @@ struct Found {
 
 impl Heading {
     /// Reads the heading of a file; its first `skipped` lines are not looked at. The names are the last line without a number
-    /// before the first row that has as many cells and begins with a number or a time. Where there is none such, they are the first line, or there are none.
+    /// before the first row that has as many cells (but for a separator at the end) and begins with a number or a time. Where there is none such, they are the first line, or there are none.
     ///
     /// # Errors
     /// A file that cannot be read or has no rows.
@@ -122,7 +122,7 @@ fn find(path: &Path, skipped: u64) -> Result<Option<Found>, Error> {
         if let Some((names, last)) = &before[1]
             && has_numbers
             && begins
-            && last.len() == cells.len()
+            && go_together(last, &cells)
         {
             let row = lines.number;
             let above = before[0].as_ref().filter(|(_, above)| above.len() == last.len());
@@ -146,6 +146,14 @@ fn find(path: &Path, skipped: u64) -> Result<Option<Found>, Error> {
         before[1] = (!has_numbers).then_some((lines.number, cells));
     }
     Ok(None)
+}
+
+/// Whether these are names and a row of the same table: either may end in a separator more.
+fn go_together(names: &[String], row: &[String]) -> bool {
+    let ends_empty = |cells: &[String]| cells.last().is_some_and(String::is_empty);
+    names.len() == row.len()
+        || names.len() + 1 == row.len() && ends_empty(row)
+        || names.len() == row.len() + 1 && ends_empty(names)
 }
 
 /// A unit without its brackets.

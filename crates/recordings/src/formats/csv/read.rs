@@ -7,11 +7,13 @@
 //!   before is skipped but for the sample rate.
 //! - The time is the column that is called so, the first one where its unit is one of time, or the first that holds dates or
 //!   times of day. A column of days may stand before one of times of day.
-//! - An empty cell is a missing sample, and so is an empty line within a single column.
+//! - An empty cell is a missing sample, and so are `Overload`, `OVL`, `--`, `#N/A` and the like, and an empty line within a
+//!   single column.
+//! - Rows may end in a separator more than the heading, or less.
 //! - A column without a name (row numbers) is left out, and one that does not begin with a number. One whose heading has a unit
 //!   has to.
 
-use super::cells::{cells, number};
+use super::cells::{cells, is_missing, number};
 use super::date::{day, nanoseconds, time_of_day};
 use super::heading::Heading;
 use super::lines::Lines;
@@ -20,10 +22,14 @@ use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, Samples, StatedRate, TimeColumn, is_unit, name_and_unit,
     seconds_of_unit, seconds_per_unit, selected,
 };
+use std::collections::VecDeque;
 use std::path::Path;
 
 /// More columns than a table of channels has.
 const MOST_COLUMNS: usize = 1 << 12;
+
+/// Samples with a line of their own that are remembered: those of more than a block.
+const MOST_JUMPS: usize = 1 << 16;
 
 struct CsvSamples {
     lines: Lines,
@@ -40,6 +46,10 @@ struct CsvSamples {
     day: i64,
     /// The first of the dates, ns.
     start: Option<i64>,
+    /// Samples read so far.
+    read: u64,
+    /// Samples that do not stand in the line after that of the one before, with their lines: the last of them.
+    jumps: VecDeque<(u64, u64)>,
     /// The first number with a decimal sign.
     decimal: Option<Decimal>,
 }
@@ -135,6 +145,8 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
         empty: 0,
         day: 0,
         start: None,
+        read: 0,
+        jumps: VecDeque::new(),
         decimal: None,
     };
     let count = channels.len();
@@ -235,6 +247,19 @@ fn one_sign(first: &mut Option<Decimal>, cell: &[u8], place: (u64, usize, u8), n
 }
 
 impl CsvSamples {
+    /// Remembers where the next sample stands.
+    fn note_line(&mut self) {
+        let line = self.lines.number;
+        let follows = |(sample, at): &(u64, u64)| line.checked_sub(*at) == Some(self.read - sample);
+        if !self.jumps.back().is_some_and(follows) {
+            self.jumps.push_back((self.read, line));
+        }
+        if self.jumps.len() > MOST_JUMPS {
+            self.jumps.pop_front();
+        }
+        self.read += 1;
+    }
+
     /// The first date, s.
     fn first_date_s(&self) -> f64 {
         self.start.map_or(0.0, |ns| ns as f64 * 1e-9)
@@ -242,7 +267,9 @@ impl CsvSamples {
 
     fn row(&mut self, times: &mut Vec<f64>, channels: &mut [Vec<f32>]) -> Result<(), Error> {
         let mut found = 0;
+        let mut last_is_empty = false;
         for cell in cells(&self.lines.line, self.separator) {
+            last_is_empty = cell.is_empty();
             let target = self.targets.get(found).copied().unwrap_or(Target::Nowhere);
             found += 1;
             if target == Target::Nowhere {
@@ -254,6 +281,7 @@ impl CsvSamples {
                     0.0
                 }),
                 Target::Date => seconds(self.day, cell, &mut self.start),
+                Target::Channel(_) if is_missing(cell) => Some(f64::NAN),
                 _ => number(cell, self.separator),
             };
             let Some(number) = number else {
@@ -270,7 +298,9 @@ impl CsvSamples {
                 Target::Day | Target::Nowhere => {}
             }
         }
-        if found == self.columns {
+        let more = found == self.columns + 1 && last_is_empty;
+        let fewer = found + 1 == self.columns && self.names.last().is_some_and(String::is_empty);
+        if found == self.columns || more || fewer {
             return Ok(());
         }
         let reason = format!(
@@ -284,6 +314,12 @@ impl CsvSamples {
 impl Samples for CsvSamples {
     fn origin_s(&self) -> f64 {
         self.first_date_s()
+    }
+
+    fn line(&self, sample: u64) -> Option<u64> {
+        let later = self.jumps.partition_point(|(first, _)| *first <= sample);
+        let (first, line) = self.jumps.get(later.checked_sub(1)?)?;
+        Some(line + (sample - first))
     }
 
     fn read(
@@ -308,6 +344,7 @@ impl Samples for CsvSamples {
             } else {
                 self.row(times, channels)?;
             }
+            self.note_line();
             rows += 1;
         }
         Ok(rows)
