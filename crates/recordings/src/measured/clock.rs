@@ -1,11 +1,8 @@
 //! A column of time: the sample rate that follows from it, and where samples are missing.
 
-use super::stated::StatedRate;
+use super::stated::{StatedRate, agree};
 use crate::Error;
 use std::path::Path;
-
-/// A rate and a time column, or two rates, contradict each other when they differ by more.
-const RATE_TOLERANCE: f64 = 0.01;
 
 /// Share of the first steps that must be alike to determine a rate.
 const REGULAR: f64 = 0.9;
@@ -175,11 +172,6 @@ fn are_even(steps: &[f64], rate_hz: Option<f64>, rounding_s: f64) -> bool {
         off += step - step_s;
         off.abs() <= rounding_s * (1.0 + 1e-6)
     })
-}
-
-/// Whether two sample rates are meant to be the same.
-pub(crate) fn agree(a: f64, b: f64) -> bool {
-    (a - b).abs() <= RATE_TOLERANCE * a.abs().max(b.abs())
 }
 
 /// The rounding of a time that was stored in single precision, s.

@@ -1,7 +1,9 @@
 //! What a file states as a number beside its samples: the sample rate and the speed.
 
-use super::clock::agree;
 use crate::{Column, Kind, Value};
+
+/// A rate and a time column, or two rates, contradict each other when they differ by more.
+const RATE_TOLERANCE: f64 = 0.01;
 
 /// What a sample rate is called, in small letters, with blanks and without its unit.
 pub(crate) const RATES: [&str; 16] = [
@@ -60,6 +62,11 @@ impl StatedRate {
         let heading = Some(place);
         Self { hz, heading }
     }
+}
+
+/// Whether two sample rates are meant to be the same.
+pub(crate) fn agree(a: f64, b: f64) -> bool {
+    (a - b).abs() <= RATE_TOLERANCE * a.abs().max(b.abs())
 }
 
 /// Whether a number of this name is a sample rate, Hz.
