@@ -26,7 +26,7 @@ pub use windows::{Length, Window, Windows};
 
 pub(crate) use clock::TimeColumn;
 pub(crate) use names::{is_unit, name_and_unit, seconds_of_unit, seconds_per_unit};
-pub(crate) use stated::{PERIODS, RATES, StatedRate, agree, is_sample_rate, is_speed, only_rate, speed_label};
+pub(crate) use stated::{PERIODS, RATES, StatedRate, agree, is_sample_rate, is_speed, only_rate, speed_label, unclear_number};
 
 use crate::{Column, Error, Value};
 use clock::Clock;

@@ -91,6 +91,15 @@ pub(crate) fn only_rate(named: &[(&str, f64)]) -> Result<Option<f64>, String> {
     }
 }
 
+/// Below this rate, Hz, a number with a fraction and without a unit may be in kHz.
+const CLEAR_FROM_HZ: f64 = 1000.0;
+
+/// Why a number of this name and without a unit is no rate in Hz for certain; none where it is.
+pub(crate) fn unclear_number(name: &str, hz: f64) -> Option<String> {
+    let is_clear = hz.fract() == 0.0 || hz >= CLEAR_FROM_HZ || name.to_lowercase().ends_with("hz");
+    (!is_clear).then(|| format!("`{name}` is {hz}, which may be in Hz or in kHz"))
+}
+
 /// Whether a number of this name is a speed, rpm.
 pub(crate) fn is_speed(name: &str) -> bool {
     name.to_lowercase().ends_with("rpm")
@@ -109,6 +118,10 @@ mod tests {
     #[test]
     fn numbers_must_state_one_rate() {
         assert_eq!(only_rate(&[]), Ok(None));
+        assert!(unclear_number("fs", 25.6).is_some());
+        for (name, hz) in [("fs", 500.0), ("fs", 17_066.67), ("sample_rate_Hz", 25.6)] {
+            assert_eq!(unclear_number(name, hz), None, "{name}");
+        }
         assert_eq!(only_rate(&[("fs", 1000.0), ("sample_rate", 1001.0)]), Ok(Some(1000.0)));
         let error = only_rate(&[("fs", 1000.0), ("sample_rate", 2000.0)]).unwrap_err();
         assert!(error.contains("`fs` is 1000 Hz, `sample_rate` is 2000 Hz"), "{error}");

@@ -18,7 +18,7 @@ use super::guarded::guarded;
 use super::recording_format::{RecordingFormat, has};
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, TimeColumn, agree, is_sample_rate, is_speed,
-    name_and_unit, one_length, one_rate, only_rate, seconds_per_unit, selected, speed_label,
+    name_and_unit, one_length, one_rate, only_rate, seconds_per_unit, selected, speed_label, unclear_number,
 };
 use crate::{Error, measured::expansion};
 use contents::{Array, Contents};
@@ -90,12 +90,16 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
         at: 0,
         length,
     };
-    let rate = one_rate(path, stated_rate(path, &contents, &arrays)?, options)?;
+    let of_file = stated_rate(path, &contents, &arrays)?;
+    let nearest = contents.nearest(&arrays[0].path, is_sample_rate);
+    let unclear = nearest.first().and_then(|(name, hz)| unclear_number(name, *hz));
+    let rate = one_rate(path, of_file.filter(|_| unclear.is_none()), options)?;
     let speed = contents.stated(&arrays[0].path, is_speed);
     let count = channels.len();
     let labels = speed.and_then(speed_label).into_iter().collect();
     MeasuredFile::of_one(channels, labels, |labels| {
-        Recording::new(path, labels, count, rate, column, samples)
+        let recording = Recording::new(path, labels, count, rate, column, samples)?;
+        Ok(recording.with_unclear_rate(unclear))
     })
 }
 

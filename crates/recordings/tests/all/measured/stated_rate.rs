@@ -62,4 +62,9 @@ fn numbers_of_a_file_that_contradict_each_other_are_refused() {
     fs::write(&path, with(2000.0)).unwrap();
     let error = message(&path, &Options::default());
     assert!(error.contains("`fs` is 1000 Hz, `samplerate` is 2000 Hz"), "{error}");
+    let variables: [(&str, &[f64]); 2] = [("x", &samples), ("fs", &[25.6])];
+    fs::write(&path, big_endian_variables(&variables)).unwrap();
+    let recording = MeasuredFile::open(&path, &Options::default()).unwrap().next().unwrap().unwrap();
+    assert_eq!(recording.sample_rate_hz(), None);
+    assert_eq!(recording.unclear_rate(), Some("`fs` is 25.6, which may be in Hz or in kHz"));
 }
