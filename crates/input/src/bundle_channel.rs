@@ -270,7 +270,9 @@ fn to_si(channel: &Channel, quantity: Quantity) -> Result<ToSi, Error> {
         _ => ("1", text),
     };
     let recorded = recorded_unit(text, quantity == Quantity::Acceleration);
-    if let Some(RecordedUnit { gauge: true, name, .. }) = &recorded
+    if let Some(RecordedUnit {
+        gauge: true, name, ..
+    }) = &recorded
         && channel.offset.is_none()
     {
         return Err(refuse(format!(
@@ -302,7 +304,10 @@ fn to_si(channel: &Channel, quantity: Quantity) -> Result<ToSi, Error> {
 fn scaled(size: &str, unit: &RecordedUnit) -> f64 {
     let exact = unit::parse(&format!("{size} {}", unit.name)).ok();
     let exact = exact.filter(|measure| measure.dimension == unit.dimension);
-    exact.map_or_else(|| size.parse().unwrap_or(1.0) * unit.si, |measure| measure.si)
+    exact.map_or_else(
+        || size.parse().unwrap_or(1.0) * unit.si,
+        |measure| measure.si,
+    )
 }
 
 #[cfg(test)]

@@ -34,12 +34,17 @@ const GRAVITIES: [(&str, f64); 8] = [
 ];
 
 /// Names of angles beyond those of [`unit`], with their size, rad.
-const ANGLES: [(&str, f64); 3] = [("degree", TAU / 360.0), ("degrees", TAU / 360.0), ("rev", TAU)];
+const ANGLES: [(&str, f64); 3] = [
+    ("degree", TAU / 360.0),
+    ("degrees", TAU / 360.0),
+    ("rev", TAU),
+];
 
 /// Units whose capitals do not count.
 const ANY_CASE: [&str; 28] = [
-    "bar", "mbar", "psi", "ksi", "Pa", "hPa", "kPa", "MPa", "atm", "kgf/cm^2", "m/s", "mm/s", "cm/s", "in/s", "ft/s", "m/s^2",
-    "mm/s^2", "in/s^2", "ft/s^2", "mm", "um", "in", "mil", "Hz", "kHz", "rpm", "deg", "rad",
+    "bar", "mbar", "psi", "ksi", "Pa", "hPa", "kPa", "MPa", "atm", "kgf/cm^2", "m/s", "mm/s",
+    "cm/s", "in/s", "ft/s", "m/s^2", "mm/s^2", "in/s^2", "ft/s^2", "mm", "um", "in", "mil", "Hz",
+    "kHz", "rpm", "deg", "rad",
 ];
 
 /// Prefixes in capitals that are hardly meant: a megabar, megametres.
@@ -118,15 +123,24 @@ fn pressure(text: &str) -> Option<RecordedUnit> {
         let name = text[..start].trim_end_matches([' ', '-', '_']);
         plain(name).filter(|unit| unit.dimension == PRESSURE)
     };
-    let gauge = GAUGE_ENDINGS.iter().find_map(|ending| before(ending));
-    let gauge = gauge.map(|unit| RecordedUnit { gauge: true, ..unit });
-    gauge.or_else(|| ABSOLUTE_ENDINGS.iter().find_map(|ending| before(ending)))
+    let gauge = GAUGE_ENDINGS.iter().find_map(&before);
+    let gauge = gauge.map(|unit| RecordedUnit {
+        gauge: true,
+        ..unit
+    });
+    gauge.or_else(|| ABSOLUTE_ENDINGS.iter().find_map(before))
 }
 
 /// A unit in small letters without what may be written in several ways.
 fn small(text: &str) -> String {
-    let small = text.to_lowercase().replace(['^', '*', ' '], "").replace('²', "2");
-    let small = small.replace("inches", "in").replace("inch", "in").replace("/sec", "/s");
+    let small = text
+        .to_lowercase()
+        .replace(['^', '*', ' '], "")
+        .replace('²', "2");
+    let small = small
+        .replace("inches", "in")
+        .replace("inch", "in")
+        .replace("/sec", "/s");
     small.replace("/s/s", "/s2")
 }
 
@@ -163,7 +177,12 @@ mod tests {
             ("m/s**2", ACCELERATION, 1.0, false),
             ("ips", Dimension::new(1.0, 0.0, -1.0, 0.0), 0.0254, false),
             ("in/s", Dimension::new(1.0, 0.0, -1.0, 0.0), 0.0254, false),
-            ("inch/sec", Dimension::new(1.0, 0.0, -1.0, 0.0), 0.0254, false),
+            (
+                "inch/sec",
+                Dimension::new(1.0, 0.0, -1.0, 0.0),
+                0.0254,
+                false,
+            ),
             ("mm/sec", Dimension::new(1.0, 0.0, -1.0, 0.0), 1e-3, false),
             ("mils", Dimension::new(1.0, 0.0, 0.0, 0.0), 2.54e-5, false),
             ("mil", Dimension::new(1.0, 0.0, 0.0, 0.0), 2.54e-5, false),
@@ -181,7 +200,11 @@ mod tests {
     fn gravities_are_accelerations_where_the_channel_is_one() {
         for (text, size) in [("g", 1.0), ("G", 1.0), ("mg", 1e-3), ("µg", 1e-6)] {
             let found = recorded_unit(text, true).unwrap();
-            assert_eq!((found.dimension, found.si), (ACCELERATION, size * GRAVITY), "{text}");
+            assert_eq!(
+                (found.dimension, found.si),
+                (ACCELERATION, size * GRAVITY),
+                "{text}"
+            );
         }
         assert!(recorded_unit("g", false).is_some());
         for text in ["mg", "ug", "G"] {
@@ -191,7 +214,16 @@ mod tests {
 
     #[test]
     fn other_units_are_not_known() {
-        for text in ["", "Mbar", "furlong", "mil pk-pk", "mm/s rms", "V", "counts", "p(g)"] {
+        for text in [
+            "",
+            "Mbar",
+            "furlong",
+            "mil pk-pk",
+            "mm/s rms",
+            "V",
+            "counts",
+            "p(g)",
+        ] {
             assert_eq!(recorded_unit(text, true), None, "{text}");
         }
     }

@@ -106,7 +106,9 @@ fn windows(
     whole: bool,
 ) -> Result<(Windows, Current), Error> {
     let wrong = |reason: String| layout.wrong(reason);
-    let rate = recording.sample_rate_hz().ok_or_else(|| wrong(no_rate(layout, &recording)))?;
+    let rate = recording
+        .sample_rate_hz()
+        .ok_or_else(|| wrong(no_rate(layout, &recording)))?;
     let stated = layout.stated_speed(recording.labels())?;
     let mut speed = stated;
     if let (None, WindowLength::Revolutions(_) | WindowLength::RevolutionsOrRows(_)) =

@@ -129,7 +129,11 @@ pub(super) fn scaled(channel: &MeasuredChannel, default: Option<&Unit>) -> Resul
 fn is_acceleration(name: &str) -> bool {
     let lower = name.to_lowercase();
     let mut words = lower.split(|c: char| !c.is_alphabetic());
-    let starts = |word: &str| ["accel", "vibr", "beschl"].iter().any(|begin| word.starts_with(begin));
+    let starts = |word: &str| {
+        ["accel", "vibr", "beschl"]
+            .iter()
+            .any(|begin| word.starts_with(begin))
+    };
     words.any(|word| ["acc", "vib"].contains(&word) || starts(word))
 }
 
@@ -231,8 +235,16 @@ mod tests {
             ("mass", Some("kg"), None),
             ("x", Some("mg"), Some("the unit mg is not known")),
             ("field", Some("G"), Some("the unit G is not known")),
-            ("d", Some("mil pk-pk"), Some("the unit mil pk-pk is not known")),
-            ("p", Some("PSIG"), Some("PSIG counts from the ambient pressure")),
+            (
+                "d",
+                Some("mil pk-pk"),
+                Some("the unit mil pk-pk is not known"),
+            ),
+            (
+                "p",
+                Some("PSIG"),
+                Some("PSIG counts from the ambient pressure"),
+            ),
         ] {
             let found = scaled(&channel(name, unit), None).unwrap();
             assert_eq!(found.not_si.as_deref(), why, "{name}");

@@ -70,7 +70,11 @@ impl Clock {
                         let of_pair = (times[at] * scale, times[at + 1] * scale);
                         let back = not_ahead(&place(at as u64 + 1), of_pair);
                         let backwards = median < 0.0;
-                        let what = if backwards { "the times run backwards" } else { "the times are not evenly spaced" };
+                        let what = if backwards {
+                            "the times run backwards"
+                        } else {
+                            "the times are not evenly spaced"
+                        };
                         return refuse(format!("{what}: {back}"));
                     }
                     let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
@@ -92,9 +96,14 @@ impl Clock {
         if !agree(stated.hz, found_hz) {
             let says = match &stated.heading {
                 None => format!("the sample rate is said to be {} Hz", stated.hz),
-                Some(place) => format!("{place}, says {} Hz: state the sample rate that is right", stated.hz),
+                Some(place) => format!(
+                    "{place}, says {} Hz: state the sample rate that is right",
+                    stated.hz
+                ),
             };
-            return refuse(format!("the times are those of {found_hz:.6} Hz, but {says}"));
+            return refuse(format!(
+                "the times are those of {found_hz:.6} Hz, but {says}"
+            ));
         }
         let hz = match stated.heading {
             None => stated.hz,
@@ -289,7 +298,10 @@ mod tests {
         let message = |times: &[f64], stated| clock(times, stated).unwrap_err().to_string();
         assert!(message(&times(1000.0, 50), Some(2000.0)).contains("those of 1000"));
         assert!(message(&[0.0; 50], None).contains("not evenly spaced: sample 1 is at 0 s"));
-        assert!(message(&[3.0, 2.0, 1.0], None).contains("run backwards: sample 1 is at 2 s, the one before at 3 s"));
+        assert!(
+            message(&[3.0, 2.0, 1.0], None)
+                .contains("run backwards: sample 1 is at 2 s, the one before at 3 s")
+        );
         assert!(message(&[0.0, 1.0, 5.0, 5.5, 9.0, 20.0], None).contains("not evenly spaced"));
         assert!(message(&[0.0, f64::NAN], None).contains("sample 1 has no time"));
         assert!(message(&[0.0], None).contains("one sample"));

@@ -26,7 +26,10 @@ pub use windows::{Length, Window, Windows};
 
 pub(crate) use clock::TimeColumn;
 pub(crate) use names::{is_unit, name_and_unit, seconds_of_unit, seconds_per_unit};
-pub(crate) use stated::{PERIODS, RATES, StatedRate, agree, is_sample_rate, is_speed, only_rate, speed_label, unclear_number};
+pub(crate) use stated::{
+    PERIODS, RATES, StatedRate, agree, is_sample_rate, is_speed, only_rate, speed_label,
+    unclear_number,
+};
 
 use crate::{Column, Error, Value};
 use clock::Clock;
@@ -242,7 +245,10 @@ impl Recording {
 
     /// The same, with what stands in the file about a sample rate and is not understood.
     pub(crate) fn with_unclear_rate(self, unclear_rate: Option<String>) -> Self {
-        Self { unclear_rate, ..self }
+        Self {
+            unclear_rate,
+            ..self
+        }
     }
 
     /// What stands in the file about a sample rate and is not understood: its place, and why.

@@ -72,7 +72,10 @@ fn in_brackets(heading: &str) -> Option<(&str, &str)> {
 
 /// Whether this is a unit of pressure without a reference, in letters of any case.
 fn is_pressure(unit: &str) -> bool {
-    ["bar", "mbar", "psi", "pa", "kpa", "mpa", "kg/cm2", "kgf/cm2"].contains(&unit.to_lowercase().as_str())
+    [
+        "bar", "mbar", "psi", "pa", "kpa", "mpa", "kg/cm2", "kgf/cm2",
+    ]
+    .contains(&unit.to_lowercase().as_str())
 }
 
 /// The name without the unit that it ends in: `acc` of `acc_m_s2`.
@@ -117,11 +120,17 @@ pub(crate) fn seconds_per_unit(name: &str, unit: Option<&str>) -> Option<f64> {
 /// Seconds in a unit of time; none for other units. Capitals do not count in words.
 pub(crate) fn seconds_of_unit(unit: &str) -> Option<f64> {
     let lower = unit.to_lowercase();
-    let word = if lower.len() >= SHORTEST_ANY_CASE { &lower } else { unit };
+    let word = if lower.len() >= SHORTEST_ANY_CASE {
+        &lower
+    } else {
+        unit
+    };
     match word {
         "s" | "sec" | "secs" | "second" | "seconds" => Some(1.0),
         "ms" | "msec" | "msecs" | "millisec" | "millisecond" | "milliseconds" => Some(1e-3),
-        "us" | "µs" | "μs" | "usec" | "µsec" | "μsec" | "microsecond" | "microseconds" => Some(1e-6),
+        "us" | "µs" | "μs" | "usec" | "µsec" | "μsec" | "microsecond" | "microseconds" => {
+            Some(1e-6)
+        }
         "ns" | "nsec" | "nanosecond" | "nanoseconds" => Some(1e-9),
         "min" | "minute" | "minutes" => Some(60.0),
         "h" | "hr" | "hrs" | "hour" | "hours" => Some(3600.0),
@@ -133,8 +142,8 @@ pub(crate) fn seconds_of_unit(unit: &str) -> Option<f64> {
 pub(crate) fn is_unit(cell: &str) -> bool {
     let cell = cell.trim_matches(['[', ']', '(', ')', ' ']);
     let others = [
-        "V", "mV", "m/s²", "m/s2", "m/sec^2", "mm/sec", "in/sec", "ips", "mil", "mils", "µm", "um", "hPa", "kPag", "kPaa",
-        "kg/cm2", "kg/cm²", "kgf/cm2", "°", "°C", "%",
+        "V", "mV", "m/s²", "m/s2", "m/sec^2", "mm/sec", "in/sec", "ips", "mil", "mils", "µm", "um",
+        "hPa", "kPag", "kPaa", "kg/cm2", "kg/cm²", "kgf/cm2", "°", "°C", "%",
     ];
     let mut known = ENDINGS.iter().map(|(_, unit)| *unit).chain(others);
     // `bar g` and `psi (g)` as `barg` and `psig`. Short names of columns are like units in other letters.
@@ -186,7 +195,16 @@ mod tests {
 
     #[test]
     fn cells_with_units_are_told_from_names() {
-        for cell in ["[bar]", "PSI", "bar g", "(psi (g))", "m/s²", "s", "g", "KPA"] {
+        for cell in [
+            "[bar]",
+            "PSI",
+            "bar g",
+            "(psi (g))",
+            "m/s²",
+            "s",
+            "g",
+            "KPA",
+        ] {
             assert!(is_unit(cell), "{cell}");
         }
         for cell in ["A", "G", "MM", "M", "acc", "", "Kanal 1"] {

@@ -122,9 +122,15 @@ mod tests {
         for (name, hz) in [("fs", 500.0), ("fs", 17_066.67), ("sample_rate_Hz", 25.6)] {
             assert_eq!(unclear_number(name, hz), None, "{name}");
         }
-        assert_eq!(only_rate(&[("fs", 1000.0), ("sample_rate", 1001.0)]), Ok(Some(1000.0)));
+        assert_eq!(
+            only_rate(&[("fs", 1000.0), ("sample_rate", 1001.0)]),
+            Ok(Some(1000.0))
+        );
         let error = only_rate(&[("fs", 1000.0), ("sample_rate", 2000.0)]).unwrap_err();
-        assert!(error.contains("`fs` is 1000 Hz, `sample_rate` is 2000 Hz"), "{error}");
+        assert!(
+            error.contains("`fs` is 1000 Hz, `sample_rate` is 2000 Hz"),
+            "{error}"
+        );
     }
 
     #[test]

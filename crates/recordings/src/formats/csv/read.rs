@@ -19,8 +19,8 @@ use super::heading::Heading;
 use super::lines::Lines;
 use crate::Error;
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, Samples, StatedRate, TimeColumn, is_unit, name_and_unit,
-    seconds_of_unit, seconds_per_unit, selected,
+    MeasuredChannel, MeasuredFile, Options, Recording, Samples, StatedRate, TimeColumn, is_unit,
+    name_and_unit, seconds_of_unit, seconds_per_unit, selected,
 };
 use std::collections::VecDeque;
 use std::path::Path;
@@ -221,7 +221,12 @@ fn seconds(day: i64, cell: &[u8], start: &mut Option<i64>) -> Option<f64> {
 
 /// That all numbers have one decimal sign, where commas do not separate the cells. `place` is the line, the column and the
 /// separator.
-fn one_sign(first: &mut Option<Decimal>, cell: &[u8], place: (u64, usize, u8), names: &[String]) -> Result<(), String> {
+fn one_sign(
+    first: &mut Option<Decimal>,
+    cell: &[u8],
+    place: (u64, usize, u8),
+    names: &[String],
+) -> Result<(), String> {
     let (line, column, separator) = place;
     let sign = cell.iter().copied().find(|byte| b".,".contains(byte));
     let Some(sign) = sign.filter(|_| separator != b',') else {
@@ -240,7 +245,12 @@ fn one_sign(first: &mut Option<Decimal>, cell: &[u8], place: (u64, usize, u8), n
         Some(_) => Ok(()),
         None => {
             let number = String::from_utf8_lossy(cell).into_owned();
-            *first = Some(Decimal { sign, line, column, number });
+            *first = Some(Decimal {
+                sign,
+                line,
+                column,
+                number,
+            });
             Ok(())
         }
     }
@@ -290,7 +300,8 @@ impl CsvSamples {
             if matches!(target, Target::Time | Target::Channel(_)) {
                 let path = &self.lines.path;
                 let place = (self.lines.number, found - 1, self.separator);
-                one_sign(&mut self.decimal, cell, place, &self.names).map_err(|reason| damaged(path, reason))?;
+                one_sign(&mut self.decimal, cell, place, &self.names)
+                    .map_err(|reason| damaged(path, reason))?;
             }
             match target {
                 Target::Time | Target::Date => times.push(number),

@@ -58,7 +58,10 @@ impl StatedLines {
     /// The rate on which all lines that are understood agree, or why there is none; neither where no line is about it.
     pub(super) fn rate(self) -> (Option<StatedRate>, Option<String>) {
         let first = |of: fn(&Line) -> Option<&String>| {
-            let mut found = self.lines.iter().filter_map(|(place, line)| Some((place, of(line)?)));
+            let mut found = self
+                .lines
+                .iter()
+                .filter_map(|(place, line)| Some((place, of(line)?)));
             found.next().map(|(place, why)| format!("{place}: {why}"))
         };
         let vetoed = first(|line| match line {
@@ -100,21 +103,32 @@ fn said(line: &str) -> Option<Line> {
         let rest = lower.strip_prefix(**label);
         rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric()))
     };
-    let longest = |labels: &'static [&'static str]| labels.iter().filter(begins).max_by_key(|label| label.len());
+    let longest = |labels: &'static [&'static str]| {
+        labels.iter().filter(begins).max_by_key(|label| label.len())
+    };
     let of_samples = || ["s/s", "sps"].iter().any(|unit| lower.contains(unit));
     let labels = longest(&RATES).or_else(|| longest(&["rate"]).filter(|_| of_samples()));
     let label = labels.map(|label| (label, Named::Rate));
     let label = label.or_else(|| longest(&PERIODS).map(|label| (label, Named::Period)));
-    let mentions = || RATES.iter().chain(&PERIODS).any(|name| name.len() > 7 && lower.contains(name));
+    let mentions = || {
+        RATES
+            .iter()
+            .chain(&PERIODS)
+            .any(|name| name.len() > 7 && lower.contains(name))
+    };
     if (label.is_some() || mentions()) && DIVIDERS.iter().any(|word| lower.contains(word)) {
-        return Some(Line::Vetoed("whether it divides the sample rate is not understood".into()));
+        return Some(Line::Vetoed(
+            "whether it divides the sample rate is not understood".into(),
+        ));
     }
     match label {
         Some((label, named)) => Some(match quantity(&text[label.len()..], named) {
             Ok(hz) => Line::Rate(hz),
             Err(why) => Line::Unclear(why),
         }),
-        None => mentions().then(|| Line::Unclear("the line does not begin with the name of a sample rate".into())),
+        None => mentions().then(|| {
+            Line::Unclear("the line does not begin with the name of a sample rate".into())
+        }),
     }
 }
 
@@ -142,14 +156,22 @@ impl Unit {
         }
         let lower = text.to_lowercase();
         let mega = text.starts_with('M');
-        let factors = [("", 1.0), ("k", 1e3), ("kilo", 1e3), ("mega", 1e6), ("m", 1e6)];
+        let factors = [
+            ("", 1.0),
+            ("k", 1e3),
+            ("kilo", 1e3),
+            ("mega", 1e6),
+            ("m", 1e6),
+        ];
         let found = factors.into_iter().find(|(prefix, _)| {
             let name = lower.strip_prefix(prefix);
             (*prefix != "m" || mega) && name.is_some_and(|name| PER_SECOND.contains(&name))
         });
         match found {
             Some((_, factor)) => Ok(Self::PerSecond(factor)),
-            None => Err(format!("found `{text}`, expected a unit such as Hz, kHz, S/s or ms")),
+            None => Err(format!(
+                "found `{text}`, expected a unit such as Hz, kHz, S/s or ms"
+            )),
         }
     }
 }
@@ -169,8 +191,12 @@ fn quantity(rest: &str, named: Named) -> Result<f64, String> {
                 let own = (!own.is_empty()).then(|| Unit::parse(own)).transpose()?;
                 numbers.push((&cell[..cell.len() - after.len()], number, own));
             }
-            None if unit.is_none() && !cell.starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c)) => {
-                unit = Some(Unit::parse(cell.trim_matches(around)).map_err(|_| expected_number(cell))?);
+            None if unit.is_none()
+                && !cell.starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c)) =>
+            {
+                unit = Some(
+                    Unit::parse(cell.trim_matches(around)).map_err(|_| expected_number(cell))?,
+                );
             }
             None => return Err(expected_number(cell)),
         }
@@ -184,7 +210,9 @@ fn quantity(rest: &str, named: Named) -> Result<f64, String> {
         }
         rates.push(rate(text, number, own.or(unit), named)?);
     }
-    let first = rates.first().ok_or("found no number, expected a sample rate with its unit")?;
+    let first = rates
+        .first()
+        .ok_or("found no number, expected a sample rate with its unit")?;
     match rates.iter().all(|rate| rate == first) {
         true => Ok(*first),
         false => Err(format!("found {} numbers, expected one", rates.len())),
@@ -197,12 +225,17 @@ fn expected_number(found: &str) -> String {
 
 /// The unit that stands behind a name, in brackets, after `/` or `in`, or as the end of a word, and what follows.
 fn unit_before(rest: &str) -> Result<(Option<Unit>, &str), String> {
-    let abbreviated = rest.strip_prefix('.').filter(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
+    let abbreviated = rest
+        .strip_prefix('.')
+        .filter(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
     let rest = abbreviated.unwrap_or(rest).trim_start_matches(' ');
     let starts = |c: char| ":=;\t,+-.".contains(c) || c.is_ascii_digit();
     let unknown = || "what follows the name of the sample rate is not understood".to_owned();
     for (open, close) in [('[', ']'), ('(', ')')] {
-        let Some((inside, after)) = rest.strip_prefix(open).and_then(|rest| rest.split_once(close)) else {
+        let Some((inside, after)) = rest
+            .strip_prefix(open)
+            .and_then(|rest| rest.split_once(close))
+        else {
             continue;
         };
         let after = after.trim_start_matches(' ');
@@ -213,7 +246,10 @@ fn unit_before(rest: &str) -> Result<(Option<Unit>, &str), String> {
     }
     let (head, after) = rest.split_at(rest.find(starts).unwrap_or(rest.len()));
     let head = head.trim_matches([' ', '_']);
-    let unit = head.strip_prefix('/').or_else(|| head.strip_prefix("in ")).unwrap_or(head);
+    let unit = head
+        .strip_prefix('/')
+        .or_else(|| head.strip_prefix("in "))
+        .unwrap_or(head);
     match unit.is_empty() {
         true => Ok((None, after)),
         false => Ok((Some(Unit::parse(unit).map_err(|_| unknown())?), after)),
@@ -225,9 +261,13 @@ fn rate(text: &str, number: Written, unit: Option<Unit>, named: Named) -> Result
     let number = match (number, unit) {
         (Written::Number(number), _) => number,
         // Thousands of kilohertz would be in MHz.
-        (Written::Ambiguous { decimal, .. }, Some(Unit::PerSecond(factor))) if factor > 1.0 => decimal,
+        (Written::Ambiguous { decimal, .. }, Some(Unit::PerSecond(factor))) if factor > 1.0 => {
+            decimal
+        }
         (Written::Ambiguous { decimal, thousands }, _) => {
-            return Err(format!("found `{text}`, which may be {decimal} or {thousands}"));
+            return Err(format!(
+                "found `{text}`, which may be {decimal} or {thousands}"
+            ));
         }
     };
     if !(number.is_finite() && number > 0.0) {
@@ -246,8 +286,14 @@ fn rate(text: &str, number: Written, unit: Option<Unit>, named: Named) -> Result
         (None, Named::Period) => 1.0 / number,
     };
     let rounded = (hz * 1e6).round() / 1e6;
-    let near = if rounded > 0.0 && (rounded - hz).abs() < 1e-9 * hz { rounded } else { hz };
-    near.is_finite().then_some(near).ok_or_else(|| expected_number(text))
+    let near = if rounded > 0.0 && (rounded - hz).abs() < 1e-9 * hz {
+        rounded
+    } else {
+        hz
+    };
+    near.is_finite()
+        .then_some(near)
+        .ok_or_else(|| expected_number(text))
 }
 
 #[cfg(test)]
@@ -308,7 +354,10 @@ mod tests {
             ("Sample rate,25,600 Hz", "found 2 numbers"),
             ("Sample rate: -25600 Hz", "expected a positive number"),
             ("Sample rate: 0 Hz", "expected a positive number"),
-            ("Sample rate: unknown, see 2026 protocol", "what follows the name"),
+            (
+                "Sample rate: unknown, see 2026 protocol",
+                "what follows the name",
+            ),
             ("Sample rate: 1/25600 s", "found `/25600 s`"),
             ("Sample rate: 25600 rpm", "found `rpm`"),
             ("Sample rate: 1.536e6 /min", "found `/min`"),
@@ -323,7 +372,10 @@ mod tests {
             ("Sample rate: 25600 Hz, cut-off 10 kHz", "expected a unit"),
             ("SampleRate=25.6", "expected a unit"),
             ("dt = 0.0390625", "expected a unit"),
-            ("Sample interval: 25600 Hz", "a period in samples per second"),
+            (
+                "Sample interval: 25600 Hz",
+                "a period in samples per second",
+            ),
             ("Max. sample rate: 102400 Hz", "does not begin with"),
             ("Original sample rate: 51200 Hz", "does not begin with"),
             ("Sample rate divisor: 2", "divides"),
@@ -334,9 +386,20 @@ mod tests {
             assert_eq!(found.map(|stated| stated.hz), None, "{line}");
             let said = said.unwrap();
             assert!(said.starts_with("line 7, `"), "{said}");
-            assert!(said.contains(why) || why == "what follows the name" && said.contains("expected"), "{said}");
+            assert!(
+                said.contains(why) || why == "what follows the name" && said.contains("expected"),
+                "{said}"
+            );
         }
-        for line in ["Samples;4000", "acceleration rate 5", "Rate: 72 Hz", "dtc: 5", "fs2;1", "", "Datum;2026"] {
+        for line in [
+            "Samples;4000",
+            "acceleration rate 5",
+            "Rate: 72 Hz",
+            "dtc: 5",
+            "fs2;1",
+            "",
+            "Datum;2026",
+        ] {
             assert_eq!(said(line), None, "{line}");
         }
     }
@@ -344,13 +407,37 @@ mod tests {
     #[test]
     fn lines_decide_together() {
         for (text, rate, why) in [
-            ("Original sample rate: 51200 Hz\nSample rate: 25600 Hz", Some(25_600.0), None),
+            (
+                "Original sample rate: 51200 Hz\nSample rate: 25600 Hz",
+                Some(25_600.0),
+                None,
+            ),
             ("Sample rate: unknown\nFs = 25600", Some(25_600.0), None),
-            ("dt = 3.90625E-05 s\nSampling rate: 25.6 kHz", Some(25_600.0), None),
-            ("sample_rate;12800 Hz\nsample_rate;25600 Hz", None, Some("says 25600 Hz")),
-            ("Sample rate: 51200 Hz\nSample rate divisor: 2", None, Some("divides")),
-            ("X_Dimension\tFrequency\nDelta_X\t0.001", None, Some("do not follow in time")),
-            ("X_Dimension\tTime\tTime\nDelta_X\t0.001", Some(1000.0), None),
+            (
+                "dt = 3.90625E-05 s\nSampling rate: 25.6 kHz",
+                Some(25_600.0),
+                None,
+            ),
+            (
+                "sample_rate;12800 Hz\nsample_rate;25600 Hz",
+                None,
+                Some("says 25600 Hz"),
+            ),
+            (
+                "Sample rate: 51200 Hz\nSample rate divisor: 2",
+                None,
+                Some("divides"),
+            ),
+            (
+                "X_Dimension\tFrequency\nDelta_X\t0.001",
+                None,
+                Some("do not follow in time"),
+            ),
+            (
+                "X_Dimension\tTime\tTime\nDelta_X\t0.001",
+                Some(1000.0),
+                None,
+            ),
             ("Device: ABC", None, None),
         ] {
             let mut lines = StatedLines::default();

@@ -78,7 +78,11 @@ fn value(digits: &str, exponent: &str) -> Option<Written> {
         format!("{whole}.{fraction}{exponent}").parse::<f64>().ok()
     };
     let (whole, sign, fraction) = match digits.rfind(['.', ',']) {
-        Some(at) => (&digits[..at], digits[at..].chars().next(), &digits[at + 1..]),
+        Some(at) => (
+            &digits[..at],
+            digits[at..].chars().next(),
+            &digits[at + 1..],
+        ),
         None => (digits, None, ""),
     };
     if !fraction.bytes().all(|b| b.is_ascii_digit()) || (whole.is_empty() && fraction.is_empty()) {
@@ -89,7 +93,12 @@ fn value(digits: &str, exponent: &str) -> Option<Written> {
         let (before, after) = (whole.len(), fraction.len());
         return match sign {
             Some(',') if before > 3 && after > 3 => None,
-            Some(_) if after == 3 && (1..=3).contains(&before) && !whole.starts_with('0') && exponent.is_empty() => {
+            Some(_)
+                if after == 3
+                    && (1..=3).contains(&before)
+                    && !whole.starts_with('0')
+                    && exponent.is_empty() =>
+            {
                 let thousands = number(&format!("{whole}{fraction}"), "")?;
                 Some(Written::Ambiguous { decimal, thousands })
             }
@@ -147,15 +156,31 @@ mod tests {
     #[test]
     fn three_digits_after_the_only_sign_have_two_readings() {
         for text in ["25.600", "25,600"] {
-            let expected = Written::Ambiguous { decimal: 25.6, thousands: 25_600.0 };
+            let expected = Written::Ambiguous {
+                decimal: 25.6,
+                thousands: 25_600.0,
+            };
             assert_eq!(written_number(text, true), Some((expected, "")), "{text}");
         }
-        assert_eq!(written_number("25,600", false), Some((Written::Number(25.0), ",600")));
+        assert_eq!(
+            written_number("25,600", false),
+            Some((Written::Number(25.0), ",600"))
+        );
     }
 
     #[test]
     fn odd_numbers_are_refused() {
-        for text in ["", "Hz", "-", "1.2.3", "1,23,4", "25600,12800", "1.024,000.0", "0,512,000", ",5"] {
+        for text in [
+            "",
+            "Hz",
+            "-",
+            "1.2.3",
+            "1,23,4",
+            "25600,12800",
+            "1.024,000.0",
+            "0,512,000",
+            ",5",
+        ] {
             assert_eq!(written_number(text, true), None, "{text}");
         }
     }

@@ -18,7 +18,10 @@ impl Packing {
     /// # Errors
     /// Attributes that are not understood, as a reason.
     pub(super) fn of(attributes: &[Attribute]) -> Result<Self, String> {
-        if attributes.iter().any(|attribute| attribute.name == "_Unsigned") {
+        if attributes
+            .iter()
+            .any(|attribute| attribute.name == "_Unsigned")
+        {
             return Err("the attribute `_Unsigned` is not understood".to_owned());
         }
         let mut missing = Vec::new();
@@ -28,9 +31,15 @@ impl Packing {
         let scale = number(attributes, "scale_factor")?.unwrap_or(1.0);
         let offset = number(attributes, "add_offset")?.unwrap_or(0.0);
         if !(scale.is_finite() && scale != 0.0 && offset.is_finite()) {
-            return Err(format!("`scale_factor` is {scale} and `add_offset` is {offset}"));
+            return Err(format!(
+                "`scale_factor` is {scale} and `add_offset` is {offset}"
+            ));
         }
-        Ok(Self { scale, offset, missing })
+        Ok(Self {
+            scale,
+            offset,
+            missing,
+        })
     }
 
     /// The value that a number stands for: number × scale + offset; NaN where it is missing.

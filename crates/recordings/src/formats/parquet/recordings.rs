@@ -140,7 +140,8 @@ impl Samples for ColumnSamples {
             && let Some(data) = columns.next()
         {
             let first = &mut self.first_point;
-            let mut since_first = |point: i64| point.saturating_sub(*first.get_or_insert(point)) as f64;
+            let mut since_first =
+                |point: i64| point.saturating_sub(*first.get_or_insert(point)) as f64;
             match (self.point_s, data) {
                 (Some(_), Data::Integer(points)) => {
                     let points = points[rows.clone()].iter().copied();

@@ -86,5 +86,8 @@ fn packed_numbers_become_values_and_fill_values_are_missing() {
         }
     }
     let error = message(&path, &options(&["odd"], None));
-    assert!(error.contains("`odd`: the attribute `scale_factor` is not one number"), "{error}");
+    assert!(
+        error.contains("`odd`: the attribute `scale_factor` is not one number"),
+        "{error}"
+    );
 }

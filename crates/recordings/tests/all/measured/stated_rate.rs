@@ -35,14 +35,30 @@ fn a_heading_without_times_states_the_rate_or_says_why_not() {
 fn a_column_of_time_counts_more_than_a_heading_and_must_not_contradict_it() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.csv");
-    let table = format!("t_s;acc [g]\n{}", rows(|i| format!("{:.3};1\n", i as f64 / 1000.0)));
-    for heading in ["Sample rate: 1.005 kHz", "Sample rate: 1,024 Hz", "Original sample rate: 8 kHz"] {
+    let table = format!(
+        "t_s;acc [g]\n{}",
+        rows(|i| format!("{:.3};1\n", i as f64 / 1000.0))
+    );
+    for heading in [
+        "Sample rate: 1.005 kHz",
+        "Sample rate: 1,024 Hz",
+        "Original sample rate: 8 kHz",
+    ] {
         fs::write(&path, format!("{heading}\n{table}")).unwrap();
-        assert_eq!(read(&path, &Options::default()).1, Some(1000.0), "{heading}");
+        assert_eq!(
+            read(&path, &Options::default()).1,
+            Some(1000.0),
+            "{heading}"
+        );
     }
     fs::write(&path, format!("Device;A\nSample rate: 2000 Hz\n{table}")).unwrap();
     let error = message(&path, &Options::default());
-    for part in ["column `t_s`", "those of 1000.000000 Hz", "line 2, `Sample rate: 2000 Hz`", "2000 Hz"] {
+    for part in [
+        "column `t_s`",
+        "those of 1000.000000 Hz",
+        "line 2, `Sample rate: 2000 Hz`",
+        "2000 Hz",
+    ] {
         assert!(error.contains(part), "{error}");
     }
     assert_eq!(read(&path, &options(&[], Some(1000.0))).1, Some(1000.0));
@@ -54,17 +70,28 @@ fn numbers_of_a_file_that_contradict_each_other_are_refused() {
     let path = folder.path().join("a.mat");
     let samples: Vec<f64> = (0..20).map(f64::from).collect();
     let with = |other: f64| {
-        let variables: [(&str, &[f64]); 3] = [("x", &samples), ("fs", &[1000.0]), ("samplerate", &[other])];
+        let variables: [(&str, &[f64]); 3] =
+            [("x", &samples), ("fs", &[1000.0]), ("samplerate", &[other])];
         big_endian_variables(&variables)
     };
     fs::write(&path, with(1000.0)).unwrap();
     assert_eq!(read(&path, &Options::default()).1, Some(1000.0));
     fs::write(&path, with(2000.0)).unwrap();
     let error = message(&path, &Options::default());
-    assert!(error.contains("`fs` is 1000 Hz, `samplerate` is 2000 Hz"), "{error}");
+    assert!(
+        error.contains("`fs` is 1000 Hz, `samplerate` is 2000 Hz"),
+        "{error}"
+    );
     let variables: [(&str, &[f64]); 2] = [("x", &samples), ("fs", &[25.6])];
     fs::write(&path, big_endian_variables(&variables)).unwrap();
-    let recording = MeasuredFile::open(&path, &Options::default()).unwrap().next().unwrap().unwrap();
+    let recording = MeasuredFile::open(&path, &Options::default())
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap();
     assert_eq!(recording.sample_rate_hz(), None);
-    assert_eq!(recording.unclear_rate(), Some("`fs` is 25.6, which may be in Hz or in kHz"));
+    assert_eq!(
+        recording.unclear_rate(),
+        Some("`fs` is 25.6, which may be in Hz or in kHz")
+    );
 }
