@@ -1,4 +1,4 @@
-"""Makes matlab-v7.mat and matlab-v6.mat with SciPy, matlab-v7.3.mat with hdf5storage, groups.h5 with h5py and
+"""Makes matlab-v7.mat and matlab-v6.mat with SciPy, matlab-v7.3.mat with hdf5storage, groups.h5 and packed.h5 with h5py and
 netcdf-4.nc with netCDF4: writers that are not ours.
 
     pip install numpy scipy==1.17.1 h5py==3.16.0 hdf5storage==0.2.2 netCDF4==1.7.5.1 && python make.py
@@ -55,6 +55,18 @@ with h5py.File("groups.h5", "w", libver="latest") as file:
     second["again"] = first  # A hard link, and one that leads nowhere.
     second["gone"] = h5py.SoftLink("/nowhere")
     file["other"] = h5py.ExternalLink("groups.h5", "/run1")
+
+with h5py.File("packed.h5", "w", libver="latest") as file:
+    # As NetCDF packs values, with samples that are missing.
+    file["fs"] = 1000.0
+    packed = np.arange(100, dtype="i2")
+    packed[[7, 50]] = -32768, -1
+    for name, attributes in [
+        ("acc", {"scale_factor": np.float32(0.5), "add_offset": 10.0, "_FillValue": np.int16(-32768), "missing_value": np.int16(-1)}),
+        ("odd", {"scale_factor": [1.0, 2.0]}),
+    ]:
+        file[name] = packed
+        file[name].attrs.update(attributes)
 
 with netCDF4.Dataset("netcdf-4.nc", "w") as file:
     file.createDimension("time", None)

@@ -8,11 +8,11 @@ use crate::error::{Error, Problem};
 use crate::kind::KINDS;
 use crate::machine_file::unit_of_quantity;
 use crate::quantity::Number;
-use crate::unit::{self, Dimension, GRAVITY, UnitError};
+use crate::recorded_unit::{RecordedUnit, recorded_unit};
+use crate::unit::{self, Dimension, UnitError};
 use mechanism::declaration::Quantity;
 use serde::Deserialize;
 use simulate::sensors::{Entry, SENSORS};
-use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 /// A channel of a run.
@@ -84,20 +84,6 @@ impl ToSi {
 /// is further away.
 const SLIPS: usize = 2;
 
-const ACCELERATION: Dimension = Dimension::new(1.0, 0.0, -2.0, 0.0);
-const VELOCITY: Dimension = Dimension::new(1.0, 0.0, -1.0, 0.0);
-const ANGLE: Dimension = Dimension::new(0.0, 0.0, 0.0, 1.0);
-
-/// Units of recordings beyond those of [`unit`]: name, dimension, and size in SI units.
-const RECORDED: [(&str, Dimension, f64); 6] = [
-    ("g", ACCELERATION, GRAVITY),
-    ("mg", ACCELERATION, 1e-3 * GRAVITY),
-    ("ips", VELOCITY, 0.0254),
-    ("degree", ANGLE, TAU / 360.0),
-    ("degrees", ANGLE, TAU / 360.0),
-    ("rev", ANGLE, TAU),
-];
-
 /// What a channel is in a machine whose throws have these names (one that is empty for a machine of
 /// one). Mistakes stand under the keys of the channel.
 ///
@@ -151,13 +137,7 @@ pub(crate) fn suggested_name(column: &str, unit: &str) -> Option<String> {
     if !matches!(meaning(&channel, &[""]), Ok(Meaning::Other)) {
         return Some(words(column));
     }
-    let absolute = unit::gauge(unit).map_or(unit, |(_, of)| of);
-    let recorded = RECORDED.iter().find(|(name, ..)| *name == absolute);
-    let parsed = || unit::parse(&format!("1 {absolute}")).ok();
-    let dimension = match recorded {
-        Some((_, dimension, _)) => *dimension,
-        None => parsed()?.dimension,
-    };
+    let dimension = recorded_unit(unit, true)?.dimension;
     let of = |quantity| unit_of_quantity(quantity).0 == dimension;
     let suggestions = [
         (Quantity::Acceleration, "crosshead acceleration"),
@@ -170,9 +150,8 @@ pub(crate) fn suggested_name(column: &str, unit: &str) -> Option<String> {
 
 /// The standard atmosphere in the unit of a gauge; none for any other unit.
 pub(crate) fn ambient_pressure(unit: &str) -> Option<f64> {
-    let (_, absolute) = unit::gauge(unit)?;
-    let one_of = |unit: &str| unit::parse(&format!("1 {unit}")).ok();
-    let ambient = one_of("atm")?.si / one_of(absolute)?.si;
+    let gauge = recorded_unit(unit, false).filter(|unit| unit.gauge)?;
+    let ambient = unit::parse("1 atm").ok()?.si / gauge.si;
     Some((1e4 * ambient).round() / 1e4)
 }
 
@@ -285,23 +264,23 @@ fn to_si(channel: &Channel, quantity: Quantity) -> Result<ToSi, Error> {
     let (dimension, expected) = unit_of(quantity);
     let text = channel.unit.trim();
     let refuse = |reason: String| Error::new("unit", Problem::Other(reason));
-    let gauge = unit::gauge(text);
-    if let Some((name, of)) = gauge
-        && channel.offset.is_none()
-    {
-        return Err(refuse(format!(
-            "{name} counts from the ambient pressure; give that as `offset`, in {of}, to make it absolute"
-        )));
-    }
-    let text = gauge.map_or(text, |(_, of)| of);
     // The full scale of a WAV file, `50 m/s2`, leads with a number.
     let (size, text) = match text.split_once(' ') {
         Some((size, unit)) if size.parse::<f64>().is_ok_and(f64::is_finite) => (size, unit.trim()),
         _ => ("1", text),
     };
-    let recorded = RECORDED.iter().find(|(name, ..)| *name == text);
+    let recorded = recorded_unit(text, quantity == Quantity::Acceleration);
+    if let Some(RecordedUnit {
+        gauge: true, name, ..
+    }) = &recorded
+        && channel.offset.is_none()
+    {
+        return Err(refuse(format!(
+            "{text} counts from the ambient pressure; give that as `offset`, in {name}, to make it absolute"
+        )));
+    }
     let (found, scale) = match recorded {
-        Some((_, dimension, scale)) => (*dimension, size.parse().unwrap_or(1.0) * scale),
+        Some(unit) => (unit.dimension, scaled(size, &unit)),
         None => match unit::parse(&format!("{size} {text}")) {
             Ok(measure) => (measure.dimension, measure.si),
             Err(UnitError::NoUnit) => return Err(refuse(format!("no unit; expected {expected}"))),
@@ -321,9 +300,21 @@ fn to_si(channel: &Channel, quantity: Quantity) -> Result<ToSi, Error> {
     })
 }
 
+/// SI units in so many of a unit; exactly the decimal number where the unit is one of files.
+fn scaled(size: &str, unit: &RecordedUnit) -> f64 {
+    let exact = unit::parse(&format!("{size} {}", unit.name)).ok();
+    let exact = exact.filter(|measure| measure.dimension == unit.dimension);
+    exact.map_or_else(
+        || size.parse().unwrap_or(1.0) * unit.si,
+        |measure| measure.si,
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::unit::GRAVITY;
+    use std::f64::consts::TAU;
 
     fn channel(name: &str, column: &str, unit: &str) -> Channel {
         Channel {

@@ -28,6 +28,7 @@ mod nearest;
 pub mod paths;
 pub mod quantity;
 mod reader;
+pub mod recorded_unit;
 pub mod run_settings;
 pub mod schema;
 pub mod sided;

@@ -106,14 +106,9 @@ fn windows(
     whole: bool,
 ) -> Result<(Windows, Current), Error> {
     let wrong = |reason: String| layout.wrong(reason);
-    let rate = recording.sample_rate_hz().ok_or_else(|| {
-        let names: Vec<&str> = layout.channels.iter().map(|c| c.name.as_str()).collect();
-        wrong(format!(
-            "the sample rate is not known: there is no column of time, and no heading states it. Found: {}. Give \
-             --sample-rate, or call the column of time `time [s]`",
-            names.join(", ")
-        ))
-    })?;
+    let rate = recording
+        .sample_rate_hz()
+        .ok_or_else(|| wrong(no_rate(layout, &recording)))?;
     let stated = layout.stated_speed(recording.labels())?;
     let mut speed = stated;
     if let (None, WindowLength::Revolutions(_) | WindowLength::RevolutionsOrRows(_)) =
@@ -133,6 +128,20 @@ fn windows(
     let windows = Windows::new(recording, layout.channels.len(), rate, length)
         .bridging(layout.bridges(), FEWEST_SAMPLES);
     Ok((windows, current))
+}
+
+/// That no sample rate is known, and what helps.
+fn no_rate(layout: &Layout, recording: &Recording) -> String {
+    let names: Vec<&str> = layout.channels.iter().map(|c| c.name.as_str()).collect();
+    let heading = match recording.unclear_rate() {
+        None => "no heading states it".to_owned(),
+        Some(unclear) => format!("no heading states it that is understood ({unclear})"),
+    };
+    format!(
+        "the sample rate is not known: there is no column of time, and {heading}. Found: {}. Give --sample-rate, or call \
+         the column of time `time [s]`",
+        names.join(", ")
+    )
 }
 
 impl Iterator for Jobs<'_> {

@@ -65,7 +65,7 @@ impl<'a> Table<'a> {
         &self.schema
     }
 
-    /// The first file that has channels without a unit, and these.
+    /// The first file that has channels without a unit that is known, and these.
     pub fn without_unit(&self) -> Option<(&str, &[String])> {
         let mut layouts = self.layouts.iter();
         let layout = layouts.find(|layout| !layout.without_unit.is_empty())?;

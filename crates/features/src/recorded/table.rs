@@ -83,7 +83,7 @@ pub(super) struct Layout {
     pub(super) channels: Vec<Scaled>,
     /// The chambers of the machine, under the names of the channels that have their pressures.
     chambers: Vec<Chamber>,
-    /// Channels whose unit is not known.
+    /// Channels that are not in SI, with the reason where they have a unit.
     pub(super) without_unit: Vec<String>,
     features: Vec<Column>,
     feature_positions: Vec<usize>,
@@ -121,8 +121,7 @@ impl Layout {
         let chambers = input.machine.as_ref().map_or_else(Vec::new, |machine| {
             machine.chambers_of(&channels, |channel| input.column_of(&channel.name))
         });
-        let unknown = measured().filter(|c| c.unit.is_empty());
-        let without_unit = unknown.map(|c| c.name.clone()).collect();
+        let without_unit = measured().filter_map(without_unit).collect();
         let names = measured().map(|c| (c.name.as_str(), c.unit.as_str()));
         let own = |name: &str| file.labels().iter().position(|c| c.name == name);
         let fixed: BTreeSet<String> = first_columns()
@@ -199,6 +198,14 @@ impl Layout {
     }
 }
 
+/// How a channel that is not in SI is shown.
+fn without_unit(channel: &Scaled) -> Option<String> {
+    match &channel.not_si {
+        Some(why) => Some(format!("{} ({why})", channel.name)),
+        None => channel.unit.is_empty().then(|| channel.name.clone()),
+    }
+}
+
 /// The channels of a file in SI, each with a name of its own. `reference` is the one that gives the
 /// crank angle.
 fn channels(
@@ -231,6 +238,7 @@ fn channels(
         let mut scaled = scaled(&channel, default_unit)?;
         if let Some((Meaning::Measured { column, to_si }, _)) = said {
             scaled.to_si = *to_si;
+            scaled.not_si = None;
             scaled.unit = unit_of_column(column).to_owned();
         }
         let taken = |name: &str| {

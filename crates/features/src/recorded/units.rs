@@ -1,11 +1,14 @@
 //! Units of measured channels: what a file says becomes SI, so that features compare.
 
 use input::bundle_channel::ToSi;
-use input::unit::GRAVITY;
+use input::recorded_unit::recorded_unit;
+use input::unit::Dimension;
 use recordings::measured::{MeasuredChannel, stem};
 
-/// Pound-force per square inch, Pa (NIST SP 811, 2008, appendix B).
-const PSI: f64 = 6894.757;
+/// Units of channels that stay as they are: electrical ones and temperatures.
+const STAY: [&str; 13] = [
+    "V", "mV", "µV", "uV", "kV", "A", "mA", "Ohm", "Ω", "K", "°C", "degC", "°F",
+];
 
 /// A channel as the features take it.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +21,8 @@ pub(super) struct Scaled {
     pub(super) to_si: ToSi,
     /// What it is for.
     pub(super) role: Role,
+    /// Why its numbers are not in SI, where its unit is one that should be.
+    pub(super) not_si: Option<String>,
 }
 
 /// What a channel is for.
@@ -41,6 +46,7 @@ impl Scaled {
             unit: "rad".to_owned(),
             to_si,
             role,
+            not_si: None,
         }
     }
 
@@ -75,7 +81,10 @@ impl Unit {
             "" => 1.0,
             number => number.parse().ok()?,
         };
-        let (factor, si) = to_si(unit.trim())?;
+        let unit = unit.trim();
+        let Some(InSi::Times(factor, si)) = in_si(unit, unit != "G") else {
+            return None;
+        };
         let is_amount = amount.is_finite() && amount != 0.0;
         is_amount.then_some(Self {
             factor: amount * factor,
@@ -90,10 +99,19 @@ pub(super) fn scaled(channel: &MeasuredChannel, default: Option<&Unit>) -> Resul
     if base.eq_ignore_ascii_case("crank_angle") {
         return crank_angle(channel);
     }
+    let mut not_si = None;
     let (name, factor, unit) = match (&channel.unit, default) {
-        (Some(unit), _) => match to_si(unit) {
-            Some((factor, si)) => (base, factor, si),
-            None => (base, 1.0, unit.clone()),
+        (Some(unit), _) => match in_si(unit, is_acceleration(&channel.name)) {
+            Some(InSi::Times(factor, si)) => (base, factor, si),
+            Some(InSi::Gauge(name)) => {
+                not_si = Some(format!("{unit} counts from the ambient pressure"));
+                (base, 1.0, name)
+            }
+            None => {
+                let is_known = STAY.contains(&unit.as_str());
+                not_si = (!is_known).then(|| format!("the unit {unit} is not known"));
+                (base, 1.0, unit.clone())
+            }
         },
         (None, Some(unit)) => (channel.name.as_str(), unit.factor, unit.si.clone()),
         (None, None) => (channel.name.as_str(), 1.0, String::new()),
@@ -103,7 +121,20 @@ pub(super) fn scaled(channel: &MeasuredChannel, default: Option<&Unit>) -> Resul
         unit,
         to_si: times(factor),
         role: Role::Measured,
+        not_si,
     })
+}
+
+/// Whether a channel is an acceleration by its name.
+fn is_acceleration(name: &str) -> bool {
+    let lower = name.to_lowercase();
+    let mut words = lower.split(|c: char| !c.is_alphabetic());
+    let starts = |word: &str| {
+        ["accel", "vibr", "beschl"]
+            .iter()
+            .any(|begin| word.starts_with(begin))
+    };
+    words.any(|word| ["acc", "vib"].contains(&word) || starts(word))
 }
 
 fn times(scale: f64) -> ToSi {
@@ -127,17 +158,26 @@ fn crank_angle(channel: &MeasuredChannel) -> Result<Scaled, String> {
     Ok(Scaled::reference(role, times(factor)))
 }
 
-/// SI units per `unit`, and their name. Speeds stay in rpm, as the field has them.
-fn to_si(unit: &str) -> Option<(f64, String)> {
-    match unit {
-        "g" => return Some((GRAVITY, "m/s^2".to_owned())),
-        "psi" => return Some((PSI, "Pa".to_owned())),
-        "rpm" => return Some((1.0, "rpm".to_owned())),
-        _ => {}
+/// What a unit becomes.
+enum InSi {
+    /// So many of a unit of SI.
+    Times(f64, String),
+    /// A pressure that counts from the ambient one: it stays in this unit.
+    Gauge(String),
+}
+
+/// What a unit becomes; none where it is not known. Speeds stay in rpm, as the field has them, and shares in %.
+fn in_si(unit: &str, is_acceleration: bool) -> Option<InSi> {
+    if unit == "%" {
+        return Some(InSi::Times(1.0, unit.to_owned()));
     }
-    let measure = input::unit::parse(&format!("1 {unit}")).ok()?;
-    let exact = measure.si.is_finite() && measure.si > 0.0;
-    exact.then(|| (measure.si, measure.dimension.to_string()))
+    let found = recorded_unit(unit, is_acceleration)?;
+    Some(match (found.name.as_str(), found.dimension) {
+        (name, _) if found.gauge => InSi::Gauge(format!("{name}g")),
+        ("rpm", _) => InSi::Times(1.0, found.name),
+        (_, dimension) if dimension == Dimension::NONE => InSi::Times(found.si, "1".to_owned()),
+        (_, dimension) => InSi::Times(found.si, dimension.to_string()),
+    })
 }
 
 #[cfg(test)]
@@ -158,7 +198,17 @@ mod tests {
             ("acc_m_s2", Some("m/s2"), ("acc", "m/s^2", 1.0)),
             ("acc_g", Some("g"), ("acc", "m/s^2", 9.80665)),
             ("p", Some("bar"), ("p", "Pa", 1e5)),
-            ("p", Some("psi"), ("p", "Pa", 6894.757)),
+            ("p", Some("PSI"), ("p", "Pa", 6_894.757_293_168_361)),
+            ("p", Some("Mpa"), ("p", "Pa", 1e6)),
+            ("p", Some("bar g"), ("p", "barg", 1.0)),
+            ("acc", Some("mg"), ("acc", "m/s^2", 9.80665e-3)),
+            ("Vibration 1", Some("G"), ("Vibration 1", "m/s^2", 9.80665)),
+            ("XH Accel", Some("m/sec^2"), ("XH Accel", "m/s^2", 1.0)),
+            ("oil", Some("mg"), ("oil", "mg", 1.0)),
+            ("v", Some("ips"), ("v", "m/s", 0.0254)),
+            ("load", Some("%"), ("load", "%", 1.0)),
+            ("ratio", Some("1"), ("ratio", "1", 1.0)),
+            ("ratio", Some("‰"), ("ratio", "1", 1e-3)),
             ("v_mm_s", Some("mm/s"), ("v", "m/s", 1e-3)),
             ("u", Some("V"), ("u", "V", 1.0)),
             ("u", None, ("u", "", 1.0)),
@@ -177,16 +227,42 @@ mod tests {
     }
 
     #[test]
+    fn what_is_not_in_si_says_why() {
+        for (name, unit, why) in [
+            ("acc", Some("mg"), None),
+            ("u", Some("V"), None),
+            ("load", Some("%"), None),
+            ("mass", Some("kg"), None),
+            ("x", Some("mg"), Some("the unit mg is not known")),
+            ("field", Some("G"), Some("the unit G is not known")),
+            (
+                "d",
+                Some("mil pk-pk"),
+                Some("the unit mil pk-pk is not known"),
+            ),
+            (
+                "p",
+                Some("PSIG"),
+                Some("PSIG counts from the ambient pressure"),
+            ),
+        ] {
+            let found = scaled(&channel(name, unit), None).unwrap();
+            assert_eq!(found.not_si.as_deref(), why, "{name}");
+        }
+    }
+
+    #[test]
     fn a_unit_is_a_name_or_an_amount() {
         for (text, factor, si) in [
             ("m/s^2", 1.0, "m/s^2"),
             ("100 m/s^2", 100.0, "m/s^2"),
             ("2.5 bar", 2.5e5, "Pa"),
+            ("mg", 9.80665e-3, "m/s^2"),
         ] {
             let si = si.to_owned();
             assert_eq!(Unit::parse(text), Some(Unit { factor, si }));
         }
-        for wrong in ["", "7", "0 Pa", "nonsense", "1 / m"] {
+        for wrong in ["", "7", "0 Pa", "nonsense", "1 / m", "G", "barg"] {
             assert_eq!(Unit::parse(wrong), None, "{wrong}");
         }
     }

@@ -1,10 +1,8 @@
 //! A column of time: the sample rate that follows from it, and where samples are missing.
 
+use super::stated::{StatedRate, agree};
 use crate::Error;
 use std::path::Path;
-
-/// A rate and a time column, or two rates, contradict each other when they differ by more.
-const RATE_TOLERANCE: f64 = 0.01;
 
 /// Share of the first steps that must be alike to determine a rate.
 const REGULAR: f64 = 0.9;
@@ -31,16 +29,18 @@ pub(crate) struct Clock {
 
 impl Clock {
     /// From the first times of a recording, in the unit of the column, and the rate stated
-    /// elsewhere, if it is.
+    /// elsewhere, if it is. `place` says where a sample stands in the file.
     pub(crate) fn new(
         path: &Path,
         column: TimeColumn,
         times: &[f64],
-        stated_hz: Option<f64>,
+        stated: Option<&StatedRate>,
+        place: &dyn Fn(u64) -> String,
     ) -> Result<Self, Error> {
+        let stated_hz = stated.map(|stated| stated.hz);
         let refuse = |reason: String| Err(Error::time(path, &column.name, reason));
         if let Some(sample) = times.iter().position(|t| !t.is_finite()) {
-            return refuse(format!("sample {sample} has no time"));
+            return refuse(format!("{} has no time", place(sample as u64)));
         }
         let scale = column.seconds_per_unit;
         let steps: Vec<f64> = times.windows(2).map(|t| (t[1] - t[0]) * scale).collect();
@@ -66,6 +66,17 @@ impl Clock {
                             rounding_s.unwrap_or_default(),
                         ));
                     }
+                    if let Some(at) = steps.iter().position(|step| *step <= 0.0) {
+                        let of_pair = (times[at] * scale, times[at + 1] * scale);
+                        let back = not_ahead(&place(at as u64 + 1), of_pair);
+                        let backwards = median < 0.0;
+                        let what = if backwards {
+                            "the times run backwards"
+                        } else {
+                            "the times are not evenly spaced"
+                        };
+                        return refuse(format!("{what}: {back}"));
+                    }
                     let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
                     let most = steps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                     return refuse(format!(
@@ -79,18 +90,26 @@ impl Clock {
         if !(found_hz.is_finite() && found_hz > 0.0) {
             return refuse(format!("the times are steps of {found:e} s"));
         }
-        if let Some(stated) = stated_hz
-            && !agree(stated, found_hz)
-        {
+        let Some(stated) = stated else {
+            return Ok(Self::of_step(column, 1.0 / found_hz, 0.0));
+        };
+        if !agree(stated.hz, found_hz) {
+            let says = match &stated.heading {
+                None => format!("the sample rate is said to be {} Hz", stated.hz),
+                Some(place) => format!(
+                    "{place}, says {} Hz: state the sample rate that is right",
+                    stated.hz
+                ),
+            };
             return refuse(format!(
-                "the times are those of {found_hz:.6} Hz, but the sample rate is said to be {stated} Hz"
+                "the times are those of {found_hz:.6} Hz, but {says}"
             ));
         }
-        Ok(Self::of_step(
-            column,
-            1.0 / stated_hz.unwrap_or(found_hz),
-            0.0,
-        ))
+        let hz = match stated.heading {
+            None => stated.hz,
+            Some(_) => found_hz,
+        };
+        Ok(Self::of_step(column, 1.0 / hz, 0.0))
     }
 
     fn of_step(column: TimeColumn, step_s: f64, rounding_s: f64) -> Self {
@@ -108,11 +127,16 @@ impl Clock {
     }
 
     /// Goes on to the next sample: the time that is missing before it, if samples are.
-    pub(crate) fn tick(&mut self, path: &Path, time: f64) -> Result<Option<f64>, Error> {
+    pub(crate) fn tick(
+        &mut self,
+        path: &Path,
+        time: f64,
+        place: &dyn Fn(u64) -> String,
+    ) -> Result<Option<f64>, Error> {
         let time_s = time * self.column.seconds_per_unit;
         let sample = self.sample;
         if !time_s.is_finite() {
-            let reason = format!("sample {sample} has no time");
+            let reason = format!("{} has no time", place(sample));
             return Err(Error::time(path, &self.column.name, reason));
         }
         self.sample += 1;
@@ -125,11 +149,16 @@ impl Clock {
             return Err(Error::time(
                 path,
                 &self.column.name,
-                format!("sample {sample} is at {time_s} s, the one before at {last_s} s"),
+                not_ahead(&place(sample), (last_s, time_s)),
             ));
         }
         Ok((excess > slack).then_some(excess))
     }
+}
+
+/// That the later of two times, s, is not ahead of the earlier one.
+fn not_ahead(place: &str, (before_s, time_s): (f64, f64)) -> String {
+    format!("{place} is at {time_s} s, the one before at {before_s} s")
 }
 
 /// To what times with these steps may be rounded, s: the least of them that is one.
@@ -152,11 +181,6 @@ fn are_even(steps: &[f64], rate_hz: Option<f64>, rounding_s: f64) -> bool {
         off += step - step_s;
         off.abs() <= rounding_s * (1.0 + 1e-6)
     })
-}
-
-/// Whether two sample rates are meant to be the same.
-pub(crate) fn agree(a: f64, b: f64) -> bool {
-    (a - b).abs() <= RATE_TOLERANCE * a.abs().max(b.abs())
 }
 
 /// The rounding of a time that was stored in single precision, s.
@@ -188,13 +212,18 @@ fn median(values: &[f64]) -> Option<f64> {
 mod tests {
     use super::*;
 
+    fn sample(number: u64) -> String {
+        format!("sample {number}")
+    }
+
     fn clock(times: &[f64], stated: Option<f64>) -> Result<Clock, Error> {
         let column = TimeColumn {
             name: "t".into(),
             seconds_per_unit: 1.0,
             single_precision: false,
         };
-        Clock::new(Path::new("a.csv"), column, times, stated)
+        let stated = stated.map(StatedRate::number);
+        Clock::new(Path::new("a.csv"), column, times, stated.as_ref(), &sample)
     }
 
     fn times(rate: f64, count: usize) -> Vec<f64> {
@@ -222,10 +251,10 @@ mod tests {
             seconds_per_unit: 1.0,
             single_precision: true,
         };
-        let mut clock = Clock::new(Path::new("a"), column, &single[..4096], None).unwrap();
+        let mut clock = Clock::new(Path::new("a"), column, &single[..4096], None, &sample).unwrap();
         assert_eq!(clock.sample_rate_hz(), 20_000.0);
         for time in single {
-            assert_eq!(clock.tick(Path::new("a"), time).unwrap(), None);
+            assert_eq!(clock.tick(Path::new("a"), time, &sample).unwrap(), None);
         }
     }
 
@@ -234,16 +263,16 @@ mod tests {
         let even = times(1000.0, 100);
         let mut clock = clock(&even, None).unwrap();
         let path = Path::new("a");
-        assert_eq!(clock.tick(path, 0.0).unwrap(), None);
-        assert_eq!(clock.tick(path, 0.0012).unwrap(), None);
-        let gap = clock.tick(path, 0.5022).unwrap().unwrap();
+        assert_eq!(clock.tick(path, 0.0, &sample).unwrap(), None);
+        assert_eq!(clock.tick(path, 0.0012, &sample).unwrap(), None);
+        let gap = clock.tick(path, 0.5022, &sample).unwrap().unwrap();
         assert!((gap - 0.5).abs() < 1e-12);
-        let message = clock.tick(path, 0.4).unwrap_err().to_string();
+        let message = clock.tick(path, 0.4, &sample).unwrap_err().to_string();
         assert_eq!(
             message,
             "`a`, column `t`: sample 3 is at 0.4 s, the one before at 0.5022 s"
         );
-        assert!(clock.tick(path, f64::NAN).is_err());
+        assert!(clock.tick(path, f64::NAN, &sample).is_err());
     }
 
     #[test]
@@ -258,17 +287,21 @@ mod tests {
         assert_eq!(clock.sample_rate_hz(), 4000.0);
         let path = Path::new("a");
         for time in &rounded {
-            assert_eq!(clock.tick(path, *time).unwrap(), None);
+            assert_eq!(clock.tick(path, *time, &sample).unwrap(), None);
         }
-        assert!(clock.tick(path, 0.2).unwrap().unwrap() > 0.09);
-        assert!(clock.tick(path, 0.1).is_err());
+        assert!(clock.tick(path, 0.2, &sample).unwrap().unwrap() > 0.09);
+        assert!(clock.tick(path, 0.1, &sample).is_err());
     }
 
     #[test]
     fn contradictions_are_refused() {
         let message = |times: &[f64], stated| clock(times, stated).unwrap_err().to_string();
         assert!(message(&times(1000.0, 50), Some(2000.0)).contains("those of 1000"));
-        assert!(message(&[0.0; 50], None).contains("not evenly spaced"));
+        assert!(message(&[0.0; 50], None).contains("not evenly spaced: sample 1 is at 0 s"));
+        assert!(
+            message(&[3.0, 2.0, 1.0], None)
+                .contains("run backwards: sample 1 is at 2 s, the one before at 3 s")
+        );
         assert!(message(&[0.0, 1.0, 5.0, 5.5, 9.0, 20.0], None).contains("not evenly spaced"));
         assert!(message(&[0.0, f64::NAN], None).contains("sample 1 has no time"));
         assert!(message(&[0.0], None).contains("one sample"));

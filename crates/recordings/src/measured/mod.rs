@@ -6,7 +6,7 @@
 //! its samples in blocks, and [`Windows`] cuts these into windows. Memory is that of a block and of
 //! a window, for a file of any length.
 //!
-//! Samples become float32. A cell without a number becomes NaN, which the caller has to handle:
+//! Samples become float32. A cell without a number, and an infinite one, becomes NaN, which the caller has to handle:
 //! [`Windows::bridging`] bridges short gaps and splits at long ones.
 
 mod blanks;
@@ -24,9 +24,12 @@ pub use heading::{Heading, headings};
 pub use names::stem;
 pub use windows::{Length, Window, Windows};
 
-pub(crate) use clock::{TimeColumn, agree};
+pub(crate) use clock::TimeColumn;
 pub(crate) use names::{is_unit, name_and_unit, seconds_of_unit, seconds_per_unit};
-pub(crate) use stated::{is_sample_rate, is_speed, speed_label};
+pub(crate) use stated::{
+    PERIODS, RATES, StatedRate, agree, is_sample_rate, is_speed, only_rate, speed_label,
+    unclear_number,
+};
 
 use crate::{Column, Error, Value};
 use clock::Clock;
@@ -82,6 +85,7 @@ pub struct Recording {
     path: PathBuf,
     labels: Vec<Value>,
     sample_rate_hz: Option<f64>,
+    unclear_rate: Option<String>,
     start_s: Option<f64>,
     clock: Option<Clock>,
     samples: Box<dyn Samples>,
@@ -116,6 +120,11 @@ pub(crate) trait Samples: Send {
     /// The time from which times count once some were read, s since 1970 or since midnight; 0 where they are numbers.
     fn origin_s(&self) -> f64 {
         0.0
+    }
+
+    /// The line of the file in which a sample stands that was read last, where the format has lines.
+    fn line(&self, _sample: u64) -> Option<u64> {
+        None
     }
 }
 
@@ -180,10 +189,11 @@ impl Recording {
         path: &Path,
         labels: Vec<Value>,
         channels: usize,
-        stated_hz: Option<f64>,
+        stated: Option<StatedRate>,
         time: Option<TimeColumn>,
         samples: impl Samples + 'static,
     ) -> Result<Self, Error> {
+        let stated_hz = stated.as_ref().map(|stated| stated.hz);
         if let Some(rate) = stated_hz
             && !(rate.is_finite() && rate > 0.0)
         {
@@ -193,6 +203,7 @@ impl Recording {
             path: path.to_owned(),
             labels,
             sample_rate_hz: stated_hz,
+            unclear_rate: None,
             start_s: None,
             clock: None,
             samples: Box::new(samples),
@@ -214,7 +225,8 @@ impl Recording {
             }
             let first = recording.times[0] * time.seconds_per_unit;
             recording.start_s = Some(recording.samples.origin_s() + first);
-            let clock = Clock::new(path, time, &recording.times, stated_hz)?;
+            let place = |sample| place(&*recording.samples, sample);
+            let clock = Clock::new(path, time, &recording.times, stated.as_ref(), &place)?;
             recording.sample_rate_hz = Some(clock.sample_rate_hz());
             recording.clock = Some(clock);
         }
@@ -229,6 +241,19 @@ impl Recording {
     /// Samples per second, if the file or its reader knows it.
     pub fn sample_rate_hz(&self) -> Option<f64> {
         self.sample_rate_hz
+    }
+
+    /// The same, with what stands in the file about a sample rate and is not understood.
+    pub(crate) fn with_unclear_rate(self, unclear_rate: Option<String>) -> Self {
+        Self {
+            unclear_rate,
+            ..self
+        }
+    }
+
+    /// What stands in the file about a sample rate and is not understood: its place, and why.
+    pub fn unclear_rate(&self) -> Option<&str> {
+        self.unclear_rate.as_deref()
     }
 
     /// Time of the first sample by the file's column of time, s: since 1970 where it holds dates, since midnight where
@@ -287,7 +312,11 @@ impl Recording {
 
     /// Decodes at most `most` samples, and says how many there were.
     fn decode(&mut self, most: usize) -> Result<usize, Error> {
+        let before = self.decoded();
         let read = self.samples.read(most, &mut self.times, &mut self.block)?;
+        for channel in &mut self.block {
+            missing_where_infinite(&mut channel[before..]);
+        }
         let numbers = read.saturating_mul(self.block.len().max(1));
         let taken = self.expansion.take(numbers);
         taken.map_err(|reason| Error::damaged("a recording", &self.path, reason))?;
@@ -301,10 +330,11 @@ impl Recording {
         let Some(clock) = &mut self.clock else {
             return Ok((end, None, None));
         };
+        let place = |sample| place(&*self.samples, sample);
         let mut before = passed;
         let first = self.next + usize::from(passed.is_some());
         for i in first..end {
-            if let Some(gap) = clock.tick(&self.path, self.times[i])? {
+            if let Some(gap) = clock.tick(&self.path, self.times[i], &place)? {
                 if i == self.next {
                     before = Some(gap);
                 } else {
@@ -313,6 +343,21 @@ impl Recording {
             }
         }
         Ok((end, before, None))
+    }
+}
+
+/// Where a sample stands in its file.
+fn place(samples: &dyn Samples, sample: u64) -> String {
+    match samples.line(sample) {
+        Some(line) => format!("line {line}"),
+        None => format!("sample {sample}"),
+    }
+}
+
+/// Samples beyond all numbers of float32 are no measurements: they become NaN, missing ones.
+fn missing_where_infinite(samples: &mut [f32]) {
+    for sample in samples.iter_mut().filter(|sample| sample.is_infinite()) {
+        *sample = f32::NAN;
     }
 }
 
@@ -342,14 +387,14 @@ pub(crate) fn one_rate(
     path: &Path,
     of_file: Option<f64>,
     options: &Options,
-) -> Result<Option<f64>, Error> {
+) -> Result<Option<StatedRate>, Error> {
     match (of_file, options.sample_rate_hz) {
         (Some(file), Some(stated)) if !agree(file, stated) => Err(Error::RateContradicts {
             path: path.to_owned(),
             file_hz: file,
             stated_hz: stated,
         }),
-        (file, stated) => Ok(stated.or(file)),
+        (file, stated) => Ok(stated.or(file).map(StatedRate::number)),
     }
 }
 

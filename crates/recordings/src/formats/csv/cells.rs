@@ -45,3 +45,29 @@ pub(super) fn number(cell: &[u8], separator: u8) -> Option<f64> {
     }
     None
 }
+
+/// What loggers and spreadsheets write for a sample that is missing, in small letters.
+const MISSING: [&str; 16] = [
+    "n/a",
+    "na",
+    "#n/a",
+    "#na",
+    "null",
+    "none",
+    "nil",
+    "--",
+    "---",
+    "-",
+    "ovl",
+    "ovld",
+    "ovr",
+    "over",
+    "overload",
+    "overrange",
+];
+
+/// Whether a cell says that its sample is missing.
+pub(super) fn is_missing(cell: &[u8]) -> bool {
+    std::str::from_utf8(cell)
+        .is_ok_and(|cell| MISSING.contains(&cell.to_ascii_lowercase().as_str()))
+}

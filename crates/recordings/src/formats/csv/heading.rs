@@ -4,8 +4,9 @@
 use super::cells::{number, separator, texts};
 use super::date::{day, nanoseconds};
 use super::lines::Lines;
+use super::stated_rate::StatedLines;
 use crate::Error;
-use crate::measured::is_unit;
+use crate::measured::{StatedRate, is_unit};
 use std::path::Path;
 
 /// Lines within which the table begins.
@@ -18,7 +19,9 @@ pub(super) struct Heading {
     /// Names of the columns, with the units in brackets where they have a line of their own.
     pub names: Vec<String>,
     /// The sample rate that a line before the table states.
-    pub sample_rate_hz: Option<f64>,
+    pub sample_rate: Option<StatedRate>,
+    /// What stands there about a sample rate and is not understood.
+    pub unclear_rate: Option<String>,
 }
 
 /// Where the names stand, and the first row.
@@ -26,12 +29,12 @@ struct Found {
     names: u64,
     row: u64,
     units: Option<Vec<String>>,
-    sample_rate_hz: Option<f64>,
+    stated: StatedLines,
 }
 
 impl Heading {
     /// Reads the heading of a file; its first `skipped` lines are not looked at. The names are the last line without a number
-    /// before the first row that has as many cells and begins with a number or a time. Where there is none such, they are the first line, or there are none.
+    /// before the first row that has as many cells (but for a separator at the end) and begins with a number or a time. Where there is none such, they are the first line, or there are none.
     ///
     /// # Errors
     /// A file that cannot be read or has no rows.
@@ -55,7 +58,8 @@ impl Heading {
                 lines,
                 separator,
                 names: (1..=first.len()).map(|i| format!("column_{i}")).collect(),
-                sample_rate_hz: None,
+                sample_rate: None,
+                unclear_rate: None,
             });
         }
         let mut names = first;
@@ -74,11 +78,13 @@ impl Heading {
                 break;
             }
         }
+        let (sample_rate, unclear_rate) = found.map(|found| found.stated.rate()).unwrap_or_default();
         Ok(Self {
             lines,
             separator,
             names,
-            sample_rate_hz: found.and_then(|found| found.sample_rate_hz),
+            sample_rate,
+            unclear_rate,
         })
     }
 }
@@ -94,11 +100,11 @@ fn after(path: &Path, skipped: u64) -> Result<Lines, Error> {
 /// has some.
 fn find(path: &Path, skipped: u64) -> Result<Option<Found>, Error> {
     let mut lines = after(path, skipped)?;
-    let mut sample_rate_hz = None;
+    let mut stated = StatedLines::default();
     // The last two lines of text: their number and cells.
     let mut before: [Option<(u64, Vec<String>)>; 2] = [None, None];
     while lines.number < skipped + MOST_LINES && lines.advance()? {
-        sample_rate_hz = sample_rate_hz.or_else(|| stated_rate(&lines.line));
+        stated.add(lines.number, &lines.line);
         if lines.is_blank() {
             continue;
         }
@@ -116,7 +122,7 @@ fn find(path: &Path, skipped: u64) -> Result<Option<Found>, Error> {
         if let Some((names, last)) = &before[1]
             && has_numbers
             && begins
-            && last.len() == cells.len()
+            && go_together(last, &cells)
         {
             let row = lines.number;
             let above = before[0].as_ref().filter(|(_, above)| above.len() == last.len());
@@ -125,13 +131,13 @@ fn find(path: &Path, skipped: u64) -> Result<Option<Found>, Error> {
                     names: *names,
                     row,
                     units: Some(last.iter().map(|unit| bare(unit).to_owned()).collect()),
-                    sample_rate_hz,
+                    stated,
                 },
                 None => Found {
                     names: *names,
                     row,
                     units: None,
-                    sample_rate_hz,
+                    stated,
                 },
             };
             return Ok(Some(found));
@@ -142,58 +148,31 @@ fn find(path: &Path, skipped: u64) -> Result<Option<Found>, Error> {
     Ok(None)
 }
 
+/// Whether these are names and a row of the same table: either may end in a separator more.
+fn go_together(names: &[String], row: &[String]) -> bool {
+    let ends_empty = |cells: &[String]| cells.last().is_some_and(String::is_empty);
+    names.len() == row.len()
+        || names.len() + 1 == row.len() && ends_empty(row)
+        || names.len() == row.len() + 1 && ends_empty(names)
+}
+
 /// A unit without its brackets.
 fn bare(unit: &str) -> &str {
     let inside = |open, close| unit.strip_prefix(open)?.strip_suffix(close);
     inside('[', ']').or_else(|| inside('(', ')')).unwrap_or(unit).trim()
 }
 
-/// The sample rate that a line states, Hz: `Sample rate: 2000 Hz`, `Sampling Frequency;25,6 kHz`, `Abtastrate=1000`.
-fn stated_rate(line: &[u8]) -> Option<f64> {
-    let text = std::str::from_utf8(line).ok()?.to_lowercase();
-    let samples = text.find("sampl").or_else(|| text.find("abtast"))?;
-    let text = &text[samples..];
-    let rate = text.find("rat").or_else(|| text.find("freq"))?;
-    let digits = text[rate..].find(|c: char| c.is_ascii_digit())? + rate;
-    let rest = &text[digits..];
-    let end = rest
-        .find(|c: char| !(c.is_ascii_digit() || ".,e+".contains(c)))
-        .unwrap_or(rest.len());
-    let number = rest[..end].trim_end_matches([',', 'e', '+']);
-    let number: f64 = number.parse().or_else(|_| number.replacen(',', ".", 1).parse()).ok()?;
-    let factor = if rest[end..].trim_start_matches([' ', ';', ',', '\t', '[', '(']).starts_with("khz") {
-        1e3
-    } else {
-        1.0
-    };
-    Some(number * factor).filter(|rate| rate.is_finite() && *rate > 0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_rate_is_read_with_its_unit() {
-        for (line, rate) in [
-            ("Sample rate: 2000 Hz", Some(2000.0)),
-            ("Sampling Frequency;25,6 kHz", Some(25_600.0)),
-            ("Abtastrate=1000", Some(1000.0)),
-            ("# sampling_rate_hz, 12800", Some(12_800.0)),
-            ("Samples;4000", None),
-            ("acceleration rate 5", None),
-            ("sample rate: none", None),
-        ] {
-            assert_eq!(stated_rate(line.as_bytes()), rate, "{line}");
-        }
-    }
 
     fn heading(text: &str) -> (Vec<String>, u64, Option<f64>) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.csv");
         std::fs::write(&path, text).unwrap();
         let heading = Heading::read(&path, 0).unwrap();
-        (heading.names, heading.lines.number, heading.sample_rate_hz)
+        let rate = heading.sample_rate.map(|stated| stated.hz);
+        (heading.names, heading.lines.number, rate)
     }
 
     #[test]

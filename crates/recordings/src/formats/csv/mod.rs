@@ -6,7 +6,9 @@ mod encoding;
 mod heading;
 mod lines;
 mod read;
+mod stated_rate;
 mod write;
+mod written_number;
 
 pub use write::write_table;
 

@@ -1,29 +1,35 @@
 //! Columns of numbers from CSV, a line at a time.
 //!
 //! - The columns are separated by commas, semicolons or tabs. Where commas do not separate, they may be the decimal
-//!   sign.
+//!   sign. A table whose numbers have both signs is refused, because one of them may set thousands apart.
 //! - The line before the first row has their names, with the unit in brackets or at the end (`acc [m/s^2]`, `acc_m_s2`), or in
 //!   a line of its own between. A file without names has the columns `column_1`, `column_2`, ... What a data logger writes
 //!   before is skipped but for the sample rate.
 //! - The time is the column that is called so, the first one where its unit is one of time, or the first that holds dates or
 //!   times of day. A column of days may stand before one of times of day.
-//! - An empty cell is a missing sample, and so is an empty line within a single column.
+//! - An empty cell is a missing sample, and so are `Overload`, `OVL`, `--`, `#N/A` and the like, and an empty line within a
+//!   single column.
+//! - Rows may end in a separator more than the heading, or less.
 //! - A column without a name (row numbers) is left out, and one that does not begin with a number. One whose heading has a unit
 //!   has to.
 
-use super::cells::{cells, number};
+use super::cells::{cells, is_missing, number};
 use super::date::{day, nanoseconds, time_of_day};
 use super::heading::Heading;
 use super::lines::Lines;
 use crate::Error;
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, is_unit, name_and_unit,
-    seconds_of_unit, seconds_per_unit, selected,
+    MeasuredChannel, MeasuredFile, Options, Recording, Samples, StatedRate, TimeColumn, is_unit,
+    name_and_unit, seconds_of_unit, seconds_per_unit, selected,
 };
+use std::collections::VecDeque;
 use std::path::Path;
 
 /// More columns than a table of channels has.
 const MOST_COLUMNS: usize = 1 << 12;
+
+/// Samples with a line of their own that are remembered: those of more than a block.
+const MOST_JUMPS: usize = 1 << 16;
 
 struct CsvSamples {
     lines: Lines,
@@ -40,6 +46,20 @@ struct CsvSamples {
     day: i64,
     /// The first of the dates, ns.
     start: Option<i64>,
+    /// Samples read so far.
+    read: u64,
+    /// Samples that do not stand in the line after that of the one before, with their lines: the last of them.
+    jumps: VecDeque<(u64, u64)>,
+    /// The first number with a decimal sign.
+    decimal: Option<Decimal>,
+}
+
+/// A number with a decimal sign, and where it stands.
+struct Decimal {
+    sign: u8,
+    line: u64,
+    column: usize,
+    number: String,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +77,8 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
         lines,
         separator,
         names,
-        sample_rate_hz,
+        sample_rate,
+        unclear_rate,
     } = Heading::read(path, options.skipped_lines)?;
     if names.len() > MOST_COLUMNS {
         return Err(damaged(path, format!("it has {} columns", names.len())));
@@ -95,9 +116,8 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     for (channel, &i) in wanted.iter().enumerate() {
         targets[candidates[i]] = Target::Channel(channel);
     }
-    let stated = options
-        .sample_rate_hz
-        .or(sample_rate_hz.filter(|_| time.is_none()));
+    let said = options.sample_rate_hz.map(StatedRate::number);
+    let stated = said.or(sample_rate);
     let time = time.map(|(i, time)| {
         let (target, seconds_per_unit) = match time {
             Time::Number(seconds) => (Target::Time, seconds),
@@ -125,10 +145,14 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
         empty: 0,
         day: 0,
         start: None,
+        read: 0,
+        jumps: VecDeque::new(),
+        decimal: None,
     };
     let count = channels.len();
     MeasuredFile::of_one(channels, Vec::new(), |labels| {
-        Recording::new(path, labels, count, stated, time, samples)
+        let recording = Recording::new(path, labels, count, stated, time, samples)?;
+        Ok(recording.with_unclear_rate(unclear_rate))
     })
 }
 
@@ -195,7 +219,57 @@ fn seconds(day: i64, cell: &[u8], start: &mut Option<i64>) -> Option<f64> {
     Some(at.checked_sub(start)? as f64 * 1e-9)
 }
 
+/// That all numbers have one decimal sign, where commas do not separate the cells. `place` is the line, the column and the
+/// separator.
+fn one_sign(
+    first: &mut Option<Decimal>,
+    cell: &[u8],
+    place: (u64, usize, u8),
+    names: &[String],
+) -> Result<(), String> {
+    let (line, column, separator) = place;
+    let sign = cell.iter().copied().find(|byte| b".,".contains(byte));
+    let Some(sign) = sign.filter(|_| separator != b',') else {
+        return Ok(());
+    };
+    match first {
+        Some(first) if first.sign != sign => Err(format!(
+            "line {line}, column `{}`: found `{}`, but `{}` in line {}, column `{}`: one of `,` and `.` may set thousands \
+             apart; write all numbers with the same decimal sign and no sign between thousands",
+            names[column],
+            String::from_utf8_lossy(cell),
+            first.number,
+            first.line,
+            names[first.column]
+        )),
+        Some(_) => Ok(()),
+        None => {
+            let number = String::from_utf8_lossy(cell).into_owned();
+            *first = Some(Decimal {
+                sign,
+                line,
+                column,
+                number,
+            });
+            Ok(())
+        }
+    }
+}
+
 impl CsvSamples {
+    /// Remembers where the next sample stands.
+    fn note_line(&mut self) {
+        let line = self.lines.number;
+        let follows = |(sample, at): &(u64, u64)| line.checked_sub(*at) == Some(self.read - sample);
+        if !self.jumps.back().is_some_and(follows) {
+            self.jumps.push_back((self.read, line));
+        }
+        if self.jumps.len() > MOST_JUMPS {
+            self.jumps.pop_front();
+        }
+        self.read += 1;
+    }
+
     /// The first date, s.
     fn first_date_s(&self) -> f64 {
         self.start.map_or(0.0, |ns| ns as f64 * 1e-9)
@@ -203,7 +277,9 @@ impl CsvSamples {
 
     fn row(&mut self, times: &mut Vec<f64>, channels: &mut [Vec<f32>]) -> Result<(), Error> {
         let mut found = 0;
+        let mut last_is_empty = false;
         for cell in cells(&self.lines.line, self.separator) {
+            last_is_empty = cell.is_empty();
             let target = self.targets.get(found).copied().unwrap_or(Target::Nowhere);
             found += 1;
             if target == Target::Nowhere {
@@ -215,18 +291,27 @@ impl CsvSamples {
                     0.0
                 }),
                 Target::Date => seconds(self.day, cell, &mut self.start),
+                Target::Channel(_) if is_missing(cell) => Some(f64::NAN),
                 _ => number(cell, self.separator),
             };
             let Some(number) = number else {
                 return Err(not_a(target, &self.lines, &self.names[found - 1], cell));
             };
+            if matches!(target, Target::Time | Target::Channel(_)) {
+                let path = &self.lines.path;
+                let place = (self.lines.number, found - 1, self.separator);
+                one_sign(&mut self.decimal, cell, place, &self.names)
+                    .map_err(|reason| damaged(path, reason))?;
+            }
             match target {
                 Target::Time | Target::Date => times.push(number),
                 Target::Channel(channel) => channels[channel].push(number as f32),
                 Target::Day | Target::Nowhere => {}
             }
         }
-        if found == self.columns {
+        let more = found == self.columns + 1 && last_is_empty;
+        let fewer = found + 1 == self.columns && self.names.last().is_some_and(String::is_empty);
+        if found == self.columns || more || fewer {
             return Ok(());
         }
         let reason = format!(
@@ -240,6 +325,12 @@ impl CsvSamples {
 impl Samples for CsvSamples {
     fn origin_s(&self) -> f64 {
         self.first_date_s()
+    }
+
+    fn line(&self, sample: u64) -> Option<u64> {
+        let later = self.jumps.partition_point(|(first, _)| *first <= sample);
+        let (first, line) = self.jumps.get(later.checked_sub(1)?)?;
+        Some(line + (sample - first))
     }
 
     fn read(
@@ -264,6 +355,7 @@ impl Samples for CsvSamples {
             } else {
                 self.row(times, channels)?;
             }
+            self.note_line();
             rows += 1;
         }
         Ok(rows)

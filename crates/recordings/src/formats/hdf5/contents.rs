@@ -1,6 +1,7 @@
 //! The arrays of a file, and the numbers that it states beside them.
 
 use super::numbers::{Number, numbers};
+use super::packing::Packing;
 use hdf5_reader::error::Result;
 use hdf5_reader::group::Group;
 use hdf5_reader::{Attribute, Dataset, Hdf5File, SliceInfo};
@@ -26,6 +27,8 @@ pub(super) struct Array {
     /// The axis of the channels; none of a vector.
     pub(super) channel_axis: Option<usize>,
     pub(super) unit: Option<String>,
+    /// How its numbers stand for its values, or why that is not understood.
+    pub(super) packing: std::result::Result<Packing, String>,
 }
 
 /// A number beside the samples.
@@ -106,10 +109,13 @@ impl Contents {
         if dataset.shape().iter().all(|length| *length == 1) {
             let all = SliceInfo::all(dataset.ndim());
             let value = numbers(&dataset, number, &all)?;
+            let Ok(packing) = Packing::of(&attributes) else {
+                return Ok(());
+            };
             self.stated.push(Stated {
                 place: group.to_owned(),
                 name: dataset.name().rsplit('/').next().unwrap_or_default().to_owned(),
-                value: value[0],
+                value: packing.value(value[0]),
             });
             return Ok(());
         }
@@ -132,23 +138,35 @@ impl Contents {
             channels: channels as usize,
             channel_axis,
             unit,
+            packing: Packing::of(&attributes),
         });
         Ok(())
     }
 
     /// The number called so that counts for the array at `path`: the nearest outwards, or else the only one that the file has.
     pub(super) fn stated(&self, path: &str, is_called: impl Fn(&str) -> bool) -> Option<f64> {
-        let called = self.stated.iter().filter(|stated| is_called(&stated.name));
-        let around = called.clone().filter(|stated| {
-            let rest = path.strip_prefix(stated.place.as_str());
-            stated.place.is_empty() || rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
-        });
-        if let Some(nearest) = around.max_by_key(|stated| stated.place.len()) {
-            return Some(nearest.value);
+        if let Some((_, value)) = self.nearest(path, &is_called).first() {
+            return Some(*value);
         }
+        let called = self.stated.iter().filter(|stated| is_called(&stated.name));
         let mut values = called.map(|stated| stated.value);
         let first = values.next()?;
         values.all(|value| value == first).then_some(first)
+    }
+}
+
+impl Contents {
+    /// The numbers called so, by name, in the innermost place around the array at `path` that has any.
+    pub(super) fn nearest(&self, path: &str, is_called: impl Fn(&str) -> bool) -> Vec<(&str, f64)> {
+        let called = self.stated.iter().filter(|stated| is_called(&stated.name));
+        let around = called.filter(|stated| {
+            let rest = path.strip_prefix(stated.place.as_str());
+            stated.place.is_empty() || rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        });
+        let around: Vec<&Stated> = around.collect();
+        let innermost = around.iter().map(|stated| stated.place.len()).max();
+        let nearest = around.iter().filter(|stated| Some(stated.place.len()) == innermost);
+        nearest.map(|stated| (stated.name.as_str(), stated.value)).collect()
     }
 }
 

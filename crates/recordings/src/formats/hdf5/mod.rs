@@ -5,17 +5,20 @@
 //! - Its unit is the attribute `units` or `unit`.
 //! - A number, as a dataset or an attribute, is the sample rate or the speed as in a MAT file. The one that stands nearest to a
 //!   channel counts: its own attribute, then what its group has, and so on outwards.
+//! - Packed numbers become values by the attributes `scale_factor` and `add_offset`; `_FillValue` and `missing_value` are missing
+//!   samples.
 //! - Text, enumerations, compounds and arrays of more axes are left out. Links to other files are not followed.
 
 mod contents;
 mod numbers;
+mod packing;
 mod samples;
 
 use super::guarded::guarded;
 use super::recording_format::{RecordingFormat, has};
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, TimeColumn, agree, is_sample_rate, is_speed,
-    name_and_unit, one_length, one_rate, seconds_per_unit, selected, speed_label,
+    name_and_unit, one_length, one_rate, only_rate, seconds_per_unit, selected, speed_label, unclear_number,
 };
 use crate::{Error, measured::expansion};
 use contents::{Array, Contents};
@@ -82,17 +85,21 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     });
     let samples = Hdf5Samples {
         path: path.to_owned(),
-        time: time.map(|i| Reader::new(places[i].0, vec![places[i].1])),
-        channels: Reader::of_channels(wanted.iter().map(|&i| places[i])),
+        time: time.map(|i| Reader::new(path, places[i].0, vec![places[i].1])).transpose()?,
+        channels: Reader::of_channels(path, wanted.iter().map(|&i| places[i]))?,
         at: 0,
         length,
     };
-    let rate = one_rate(path, stated_rate(path, &contents, &arrays)?, options)?;
+    let of_file = stated_rate(path, &contents, &arrays)?;
+    let nearest = contents.nearest(&arrays[0].path, is_sample_rate);
+    let unclear = nearest.first().and_then(|(name, hz)| unclear_number(name, *hz));
+    let rate = one_rate(path, of_file.filter(|_| unclear.is_none()), options)?;
     let speed = contents.stated(&arrays[0].path, is_speed);
     let count = channels.len();
     let labels = speed.and_then(speed_label).into_iter().collect();
     MeasuredFile::of_one(channels, labels, |labels| {
-        Recording::new(path, labels, count, rate, column, samples)
+        let recording = Recording::new(path, labels, count, rate, column, samples)?;
+        Ok(recording.with_unclear_rate(unclear))
     })
 }
 
@@ -144,6 +151,10 @@ fn nearest_time<'a>(
 
 /// The sample rate that the file states for all of these arrays.
 fn stated_rate(path: &Path, contents: &Contents, arrays: &[&Array]) -> Result<Option<f64>, Error> {
+    for array in arrays {
+        let nearest = contents.nearest(&array.path, is_sample_rate);
+        only_rate(&nearest).map_err(|reason| damaged(path, reason))?;
+    }
     let rate = |array: &&Array| contents.stated(&array.path, is_sample_rate);
     let first = rate(&arrays[0]);
     let other = arrays.iter().find(|array| match (first, rate(array)) {

@@ -2,6 +2,7 @@
 
 use super::contents::Array;
 use super::numbers::{Number, numbers};
+use super::packing::Packing;
 use crate::Error;
 use crate::formats::guarded::guarded;
 use crate::measured::Samples;
@@ -22,6 +23,7 @@ pub(super) fn contradicts(path: &Path) -> Error {
 pub(super) struct Reader {
     dataset: Dataset,
     number: Number,
+    packing: Packing,
     channels: usize,
     channel_axis: Option<usize>,
     /// Which of its channels are wanted, in their order.
@@ -29,18 +31,31 @@ pub(super) struct Reader {
 }
 
 impl Reader {
-    pub(super) fn new(array: &Array, wanted: Vec<usize>) -> Self {
-        Self {
+    /// One of these channels of an array of the file at `path`.
+    ///
+    /// # Errors
+    /// An array whose numbers stand for values in a way that is not understood.
+    pub(super) fn new(path: &Path, array: &Array, wanted: Vec<usize>) -> Result<Self, Error> {
+        let packing = array.packing.clone();
+        let packing = packing.map_err(|reason| damaged(path, format!("`{}`: {reason}", array.path)))?;
+        Ok(Self {
             dataset: array.dataset.clone(),
             number: array.number,
+            packing,
             channels: array.channels,
             channel_axis: array.channel_axis,
             wanted,
-        }
+        })
     }
 
     /// One for each array of these channels, which stand side by side.
-    pub(super) fn of_channels<'a>(places: impl Iterator<Item = (&'a Array, usize)>) -> Vec<Self> {
+    ///
+    /// # Errors
+    /// As [`Reader::new`].
+    pub(super) fn of_channels<'a>(
+        path: &Path,
+        places: impl Iterator<Item = (&'a Array, usize)>,
+    ) -> Result<Vec<Self>, Error> {
         let mut readers: Vec<(&Array, Vec<usize>)> = Vec::new();
         for (array, index) in places {
             match readers.last_mut() {
@@ -48,7 +63,7 @@ impl Reader {
                 _ => readers.push((array, vec![index])),
             }
         }
-        readers.into_iter().map(|(array, wanted)| Self::new(array, wanted)).collect()
+        readers.into_iter().map(|(array, wanted)| Self::new(path, array, wanted)).collect()
     }
 
     /// Hands out `samples` samples of each wanted channel from sample `at` on, with the channel's place among them.
@@ -71,7 +86,7 @@ impl Reader {
         };
         for (place, index) in self.wanted.iter().enumerate() {
             let of_channel = numbers.iter().skip(index * first).step_by(step);
-            of_channel.take(samples).for_each(|x| put(place, *x));
+            of_channel.take(samples).for_each(|x| put(place, self.packing.value(*x)));
         }
         Ok(())
     }

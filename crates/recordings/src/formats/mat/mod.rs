@@ -13,7 +13,7 @@ mod samples;
 use super::recording_format::{RecordingFormat, has};
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, TimeColumn, is_sample_rate, is_speed,
-    name_and_unit, one_length, one_rate, seconds_per_unit, selected, speed_label,
+    name_and_unit, one_length, one_rate, only_rate, seconds_per_unit, selected, speed_label, unclear_number,
 };
 use crate::Error;
 use elements::{Number, damaged, scalar, scan};
@@ -81,10 +81,17 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
         let value = found.map(|variable| scalar(path, big_endian, variable));
         value.transpose()
     };
-    let rate = one_rate(path, scalar(is_sample_rate)?, options)?;
+    let mut rates = Vec::new();
+    for variable in scalars.iter().filter(|variable| is_sample_rate(&variable.name)) {
+        rates.push((variable.name.as_str(), self::scalar(path, big_endian, variable)?));
+    }
+    let of_file = only_rate(&rates).map_err(|reason| damaged(path, reason))?;
+    let unclear = rates.first().and_then(|(name, hz)| unclear_number(name, *hz));
+    let rate = one_rate(path, of_file.filter(|_| unclear.is_none()), options)?;
     let labels = scalar(is_speed)?.and_then(speed_label);
     let count = channels.len();
     MeasuredFile::of_one(channels, labels.into_iter().collect(), |labels| {
-        Recording::new(path, labels, count, rate, time, samples)
+        let recording = Recording::new(path, labels, count, rate, time, samples)?;
+        Ok(recording.with_unclear_rate(unclear))
     })
 }

@@ -6,15 +6,16 @@ use crate::measured::expansion;
 use crate::{Column, Data, Error, Kind, Role, Schema, Table};
 use arrow_array::cast::AsArray;
 use arrow_array::{Array, RecordBatch};
-use arrow_schema::{DataType, Field};
+use arrow_schema::{DataType, Field, TimeUnit};
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::{
     ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReader,
     ParquetRecordBatchReaderBuilder,
 };
+use parquet::basic::Compression;
 use parquet::file::FOOTER_SIZE;
 use parquet::file::metadata::PageIndexPolicy;
-use parquet::file::metadata::{FooterTail, ParquetMetaDataReader};
+use parquet::file::metadata::{FooterTail, ParquetMetaData, ParquetMetaDataReader};
 use std::fs::File;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -83,6 +84,9 @@ impl ParquetFile {
             // Without an index of pages: it could name others than those whose headers are read here.
             let options = ArrowReaderOptions::new().with_page_index_policy(PageIndexPolicy::Skip);
             let metadata = ArrowReaderMetadata::load(&file, options).map_err(damaged(path))?;
+            if let Some(reason) = unread_codec(metadata.metadata()) {
+                return Err(damaged(path)(reason));
+            }
             let announced = pages::announced(&file, metadata.metadata()).map_err(damaged(path))?;
             let length = file.metadata().map_err(Error::io("read", path))?.len();
             let most = expansion::most_of(length);
@@ -163,7 +167,7 @@ impl ParquetFile {
         columns: &[&str],
         rows: usize,
     ) -> Result<impl Iterator<Item = Result<Table, Error>> + Send + use<>, Error> {
-        let wanted = columns.iter().map(|name| self.wanted(name));
+        let wanted = columns.iter().map(|name| self.wanted_samples(name));
         let wanted = Schema::new(wanted.collect::<Result<_, _>>()?)?;
         let path = self.path.clone();
         let mut batches = guarded(&path, || self.reader(columns, 0..self.rows, rows))?;
@@ -182,6 +186,25 @@ impl ParquetFile {
             ended = read.is_err();
             read.transpose()
         }))
+    }
+
+    /// The columns of points in time, with the seconds of one unit.
+    pub(crate) fn points_in_time(&self) -> Vec<(&str, f64)> {
+        let fields = self.metadata.schema().fields().iter();
+        let points = fields.filter_map(|field| match field.data_type() {
+            DataType::Timestamp(unit, _) => Some((field.name().as_str(), seconds(*unit))),
+            _ => None,
+        });
+        points.collect()
+    }
+
+    /// The column as channels and times have it: points in time are whole numbers.
+    fn wanted_samples(&self, name: &str) -> Result<Column, Error> {
+        let is_point = self.points_in_time().iter().any(|(point, _)| *point == name);
+        match is_point {
+            true => Ok(Column::new(name, Kind::Integer, "").optional()),
+            false => self.wanted(name),
+        }
     }
 
     /// Whether the file has the column in float32.
@@ -265,6 +288,29 @@ impl ParquetFile {
     }
 }
 
+/// That a column is compressed by a codec that is not built in, and what to do.
+fn unread_codec(metadata: &ParquetMetaData) -> Option<String> {
+    let mut columns = metadata.row_groups().iter().flat_map(|group| group.columns());
+    let is_read = |codec| matches!(codec, Compression::UNCOMPRESSED | Compression::SNAPPY | Compression::ZSTD(_));
+    let column = columns.find(|column| !is_read(column.compression()))?;
+    let codec = column.compression().to_string();
+    let codec = codec.split('(').next().unwrap_or_default();
+    let name = column.column_path().string();
+    Some(format!(
+        "column `{name}` is compressed with {codec}, which is not read: write the file with zstd, snappy or no compression"
+    ))
+}
+
+/// Seconds of a unit of time.
+fn seconds(unit: TimeUnit) -> f64 {
+    match unit {
+        TimeUnit::Second => 1.0,
+        TimeUnit::Millisecond => 1e-3,
+        TimeUnit::Microsecond => 1e-6,
+        TimeUnit::Nanosecond => 1e-9,
+    }
+}
+
 fn append_column(
     path: &Path,
     batch: &RecordBatch,
@@ -337,8 +383,11 @@ fn column(field: &Field) -> Option<Column> {
 fn kind(data_type: &DataType) -> Option<Kind> {
     match data_type {
         DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => Some(Kind::Text),
-        DataType::Dictionary(_, values) => kind(values).filter(|kind| *kind == Kind::Text),
+        DataType::Dictionary(_, values) => {
+            kind(values).filter(|kind| matches!(kind, Kind::Text | Kind::Real | Kind::Integer))
+        }
         DataType::Float16 | DataType::Float32 | DataType::Float64 => Some(Kind::Real),
+        DataType::Decimal128(..) => Some(Kind::Real),
         DataType::Boolean => Some(Kind::Flag),
         DataType::List(item) | DataType::LargeList(item)
             if matches!(item.data_type(), DataType::Float32 | DataType::Float64) =>

@@ -15,7 +15,8 @@ const BATCH_ROWS: usize = 1 << 13;
 const RATE: &str = "sample_rate_hz";
 
 /// Opens a file. Where a column holds lists of samples, every row is a recording, and the other
-/// columns are its labels. Otherwise the columns of numbers are the channels of one recording.
+/// columns are its labels. Otherwise the columns of numbers are the channels of one recording; the time is a column that is
+/// called so, or else the first one of points in time.
 pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     let file = ParquetFile::open(path)?;
     let lists = file
@@ -53,13 +54,26 @@ fn columns(path: &Path, file: &ParquetFile, options: &Options) -> Result<Measure
             "it has no column of numbers",
         ));
     }
+    let is_there = |name: &&String| rest.iter().any(|channel| channel.is_called(name));
+    if let Some(name) = options.columns.iter().find(|name| !is_there(name)) {
+        // Of a type that has no numbers, it says so.
+        file.wanted(name)?;
+    }
     let wanted = selected(&rest, options)?;
     let channels: Vec<_> = wanted.iter().map(|&i| rest[i].clone()).collect();
+    let points = file.points_in_time();
+    let point = points.first().filter(|_| times.is_empty());
+    let of_point = point.map(|(name, seconds)| TimeColumn {
+        name: (*name).to_owned(),
+        seconds_per_unit: *seconds,
+        single_precision: false,
+    });
     let time = times.first().map(|c| TimeColumn {
         name: c.column.clone(),
         seconds_per_unit: seconds_per_unit(&c.name, c.unit.as_deref()).unwrap_or(1.0),
         single_precision: file.is_single_precision(&c.column),
     });
+    let time = time.or(of_point);
     let names = time.iter().map(|t| t.name.as_str());
     let names: Vec<&str> = names
         .chain(channels.iter().map(|c| c.column.as_str()))
@@ -67,6 +81,8 @@ fn columns(path: &Path, file: &ParquetFile, options: &Options) -> Result<Measure
     let samples = ColumnSamples {
         batches: Box::new(file.batches_of(&names, BATCH_ROWS)?),
         has_time: time.is_some(),
+        point_s: point.map(|(_, seconds)| *seconds),
+        first_point: None,
         table: None,
         next: 0,
     };
@@ -86,11 +102,19 @@ fn columns(path: &Path, file: &ParquetFile, options: &Options) -> Result<Measure
 struct ColumnSamples {
     batches: Box<dyn Iterator<Item = Result<Table, Error>> + Send>,
     has_time: bool,
+    /// Seconds of one unit of the time where it holds points in time, and the first of them.
+    point_s: Option<f64>,
+    first_point: Option<i64>,
     table: Option<Table>,
     next: usize,
 }
 
 impl Samples for ColumnSamples {
+    fn origin_s(&self) -> f64 {
+        let first = self.first_point.zip(self.point_s);
+        first.map_or(0.0, |(point, seconds)| point as f64 * seconds)
+    }
+
     fn read(
         &mut self,
         most: usize,
@@ -115,7 +139,16 @@ impl Samples for ColumnSamples {
         if self.has_time
             && let Some(data) = columns.next()
         {
-            times.extend(rows.clone().map(|row| real(data, row)));
+            let first = &mut self.first_point;
+            let mut since_first =
+                |point: i64| point.saturating_sub(*first.get_or_insert(point)) as f64;
+            match (self.point_s, data) {
+                (Some(_), Data::Integer(points)) => {
+                    let points = points[rows.clone()].iter().copied();
+                    times.extend(points.map(|point| point.map_or(f64::NAN, &mut since_first)));
+                }
+                _ => times.extend(rows.clone().map(|row| real(data, row))),
+            }
         }
         for (channel, data) in channels.iter_mut().zip(columns) {
             channel.extend(rows.clone().map(|row| real(data, row) as f32));

@@ -291,6 +291,69 @@ fn files_of_other_programs_are_read_column_by_column() {
 }
 
 #[test]
+fn points_in_time_decimals_and_dictionaries_of_numbers_are_read() {
+    use crate::measured::{MeasuredFile, Options};
+    use arrow_array::types::Int8Type;
+    use arrow_array::*;
+
+    const RATE: i64 = 25_000;
+    let folder = tempfile::tempdir().unwrap();
+    let count = 200_i64;
+    let start = 1_773_482_400;
+    let of = |per_second: i64| (0..count).map(move |i| start * per_second + i * per_second / RATE);
+    let slow = || (0..count).map(move |i| start * 1000 + 5 * i);
+    let with_zone = TimestampMicrosecondArray::from_iter_values(of(1_000_000)).with_timezone("+01:00");
+    let decimals = Decimal128Array::from_iter_values((0..count).map(|i| i128::from(25 * i)));
+    let decimals = decimals.with_precision_and_scale(10, 2).unwrap();
+    let keys = Int8Array::from_iter_values((0..count).map(|i| (i % 2) as i8));
+    let coded = DictionaryArray::<Int8Type>::new(keys, Arc::new(Float64Array::from(vec![0.5, -1.5])));
+    for (stamps, rate) in [
+        (Arc::new(TimestampMillisecondArray::from_iter_values(slow())) as ArrayRef, 200.0),
+        (Arc::new(with_zone), RATE as f64),
+        (Arc::new(TimestampNanosecondArray::from_iter_values(of(1_000_000_000))), RATE as f64),
+    ] {
+        let columns: Vec<(&str, ArrayRef)> = vec![
+            ("p", Arc::new(decimals.clone())),
+            ("when", stamps),
+            ("u", Arc::new(coded.clone())),
+        ];
+        let path = foreign(&folder, columns);
+        let mut file = MeasuredFile::open(&path, &Options::default()).unwrap();
+        let names: Vec<_> = file.channels().iter().map(|c| c.column.clone()).collect();
+        assert_eq!(names, ["p", "u"]);
+        let mut recording = file.next().unwrap().unwrap();
+        assert!((recording.sample_rate_hz().unwrap() / rate - 1.0).abs() < 1e-9, "{rate}");
+        assert!((recording.start_s().unwrap() - start as f64).abs() < 1e-6);
+        let mut samples = vec![Vec::new(); 2];
+        while recording.read(1000, &mut samples).unwrap().samples > 0 {}
+        assert_eq!(samples[0][3], 0.75);
+        assert_eq!(samples[1][..3], [0.5, -1.5, 0.5]);
+    }
+    let day: ArrayRef = Arc::new(Date32Array::from(vec![0, 1]));
+    let path = foreign(&folder, vec![("day", day), ("x", Arc::new(Float64Array::from(vec![0.0, 1.0])))]);
+    let columns = vec!["day".to_owned()];
+    let options = Options { columns, ..Options::default() };
+    let error = MeasuredFile::open(&path, &options).err().unwrap().to_string();
+    assert!(error.contains("column `day`") && error.contains("type Date32"), "{error}");
+}
+
+#[test]
+fn a_codec_that_is_not_built_in_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let column: ArrayRef = Arc::new(arrow_array::Float64Array::from(vec![0.0, 1.0]));
+    let path = foreign(&folder, vec![("x", column)]);
+    let mut bytes = fs::read(&path).unwrap();
+    // The codec in the footer is the field after the path of the column: 1 is SNAPPY, 4 BROTLI, as zigzag numbers.
+    let length = bytes.len();
+    let footer = length - 8 - u32::from_le_bytes(bytes[length - 8..length - 4].try_into().unwrap()) as usize;
+    let field = bytes[footer..].windows(4).position(|w| w == [1, b'x', 0x15, 2]).unwrap() + footer;
+    bytes[field + 3] = 8;
+    fs::write(&path, bytes).unwrap();
+    let error = ParquetFile::open(&path).err().unwrap().to_string();
+    assert!(error.contains("column `x` is compressed with BROTLI"), "{error}");
+}
+
+#[test]
 fn what_is_no_parquet_file_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let missing = read_table(Path::new("no/such.parquet"))

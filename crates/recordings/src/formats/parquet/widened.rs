@@ -2,13 +2,14 @@
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::{
-    ArrowPrimitiveType, Float16Type, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type,
-    Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
+    ArrowPrimitiveType, Decimal128Type, Float16Type, Float32Type, Float64Type, Int8Type, Int16Type,
+    Int32Type, Int64Type, TimestampMicrosecondType, TimestampMillisecondType,
+    TimestampNanosecondType, TimestampSecondType, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
 };
 use arrow_array::{Array, ArrayRef};
-use arrow_schema::DataType;
+use arrow_schema::{DataType, TimeUnit};
 
-/// Whole numbers.
+/// Whole numbers; points in time in their unit since 1970.
 ///
 /// # Errors
 /// A number above 2^63 - 1, or an array of something else.
@@ -22,6 +23,11 @@ pub(super) fn integers(array: &dyn Array) -> Result<Vec<Option<i64>>, String> {
         DataType::UInt16 => whole::<UInt16Type>(array),
         DataType::UInt32 => whole::<UInt32Type>(array),
         DataType::UInt64 => whole::<UInt64Type>(array),
+        DataType::Timestamp(TimeUnit::Second, _) => whole::<TimestampSecondType>(array),
+        DataType::Timestamp(TimeUnit::Millisecond, _) => whole::<TimestampMillisecondType>(array),
+        DataType::Timestamp(TimeUnit::Microsecond, _) => whole::<TimestampMicrosecondType>(array),
+        DataType::Timestamp(TimeUnit::Nanosecond, _) => whole::<TimestampNanosecondType>(array),
+        DataType::Dictionary(..) => looked_up(array, integers),
         other => Err(format!("{other} where whole numbers were announced")),
     }
 }
@@ -45,8 +51,26 @@ pub(super) fn reals(array: &dyn Array) -> Result<Vec<Option<f64>>, String> {
         DataType::Float16 => Ok(real::<Float16Type>(array)),
         DataType::Float32 => Ok(real::<Float32Type>(array)),
         DataType::Float64 => Ok(real::<Float64Type>(array)),
+        DataType::Decimal128(_, decimals) => {
+            let one = 10_f64.powi(i32::from(*decimals));
+            let numbers = array.as_primitive::<Decimal128Type>().iter();
+            Ok(numbers.map(|number| number.map(|whole| whole as f64 / one)).collect())
+        }
+        DataType::Dictionary(..) => looked_up(array, reals),
         other => Err(format!("{other} where real numbers were announced")),
     }
+}
+
+/// The values of an array that a dictionary holds once, as `values` reads those of the dictionary.
+fn looked_up<T: Clone>(
+    array: &dyn Array,
+    values: impl Fn(&dyn Array) -> Result<Vec<Option<T>>, String>,
+) -> Result<Vec<Option<T>>, String> {
+    let dictionary = array.as_any_dictionary();
+    let values = values(dictionary.values())?;
+    let keys = integers(dictionary.keys())?.into_iter();
+    let value = |key: i64| values.get(usize::try_from(key).ok()?).cloned().flatten();
+    Ok(keys.map(|key| key.and_then(value)).collect())
 }
 
 fn real<T: ArrowPrimitiveType>(array: &dyn Array) -> Vec<Option<f64>>
@@ -67,13 +91,7 @@ pub(super) fn texts(array: &dyn Array) -> Result<Vec<Option<String>>, String> {
         DataType::Utf8 => Ok(array.as_string::<i32>().iter().map(owned).collect()),
         DataType::LargeUtf8 => Ok(array.as_string::<i64>().iter().map(owned).collect()),
         DataType::Utf8View => Ok(array.as_string_view().iter().map(owned).collect()),
-        DataType::Dictionary(..) => {
-            let dictionary = array.as_any_dictionary();
-            let words = texts(dictionary.values())?;
-            let keys = integers(dictionary.keys())?.into_iter();
-            let word = |key: i64| words.get(usize::try_from(key).ok()?).cloned().flatten();
-            Ok(keys.map(|key| key.and_then(word)).collect())
-        }
+        DataType::Dictionary(..) => looked_up(array, texts),
         other => Err(format!("{other} where texts were announced")),
     }
 }

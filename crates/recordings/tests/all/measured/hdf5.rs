@@ -73,3 +73,21 @@ fn netcdf_4_has_units_and_a_time_since_a_date() {
     assert_eq!(channels["pressure"], counted);
     assert_eq!(rate, Some(1000.0));
 }
+
+#[test]
+fn packed_numbers_become_values_and_fill_values_are_missing() {
+    let path = shipped("packed.h5");
+    let (channels, rate) = read(&path, &options(&["acc"], None));
+    assert_eq!(rate, Some(1000.0));
+    for (i, found) in channels["acc"].iter().enumerate() {
+        match i {
+            7 | 50 => assert!(found.is_nan(), "{i}"),
+            _ => assert_eq!(*found, 0.5 * i as f32 + 10.0),
+        }
+    }
+    let error = message(&path, &options(&["odd"], None));
+    assert!(
+        error.contains("`odd`: the attribute `scale_factor` is not one number"),
+        "{error}"
+    );
+}

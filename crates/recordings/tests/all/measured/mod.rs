@@ -2,6 +2,7 @@
 
 mod damaged;
 mod hdf5;
+mod stated_rate;
 
 use recordings::formats::{csv, mcap, parquet};
 use recordings::measured::{Length, MeasuredFile, Options, Recording, Windows};
@@ -183,7 +184,7 @@ fn csv_in_the_characters_of_windows() {
 fn csv_columns_that_cannot_be_what_they_are_called() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.csv");
-    for found in ["n/a", "1,234.5"] {
+    for found in ["off", "1,234.5"] {
         fs::write(
             &path,
             format!("t_s;acc [g];p [bar]\n0;{found};1\n0.001;2;1\n"),
@@ -206,6 +207,95 @@ fn csv_columns_that_cannot_be_what_they_are_called() {
     fs::write(&path, ",t_s,acc\n0,0,5\n1,0.001,6\n").unwrap();
     let (channels, _) = read(&path, &Options::default());
     assert_eq!(channels.keys().collect::<Vec<_>>(), ["acc"]);
+}
+
+#[test]
+fn csv_numbers_with_two_decimal_signs_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    fs::write(
+        &path,
+        "t_s;p [Pa]\n0;200000\n0.001;200,037\n0.002;200,040\n",
+    )
+    .unwrap();
+    let error = message(&path, &Options::default());
+    let expected = "line 3, column `p [Pa]`: found `200,037`, but `0.001` in line 3, column `t_s`";
+    assert!(error.contains(expected), "{error}");
+    // A date may have points.
+    fs::write(
+        &path,
+        "when;p\n01.01.2026 00:00:00.0;1,5\n01.01.2026 00:00:00.1;2,5\n",
+    )
+    .unwrap();
+    assert_eq!(read(&path, &Options::default()).0["p"], [1.5, 2.5]);
+}
+
+#[test]
+fn csv_samples_that_are_missing_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    for mark in [
+        "Overload", "OVL", "--", "#N/A", "NaN", "n/a", "", "inf", "-inf", "1e99",
+    ] {
+        fs::write(&path, format!("t_s;acc [g]\n0;1\n0.001;{mark}\n0.002;3\n")).unwrap();
+        let acc = read(&path, &Options::default()).0["acc [g]"].clone();
+        assert!(acc[1].is_nan(), "{mark}: {acc:?}");
+        assert_eq!([acc[0], acc[2]], [1.0, 3.0], "{mark}");
+    }
+}
+
+#[test]
+fn csv_lines_may_end_in_a_separator() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    for (names, end) in [
+        ("t_s;acc", ";"),
+        ("t_s;acc;", ""),
+        ("t_s;acc;", ";"),
+        ("Device;A\nt_s;acc", ";"),
+    ] {
+        fs::write(
+            &path,
+            format!("{names}\n0;1{end}\n0.001;{end}\n0.002;3{end}\n"),
+        )
+        .unwrap();
+        let (channels, rate) = read(&path, &Options::default());
+        assert_eq!(
+            channels.keys().collect::<Vec<_>>(),
+            ["acc"],
+            "{names} {end}"
+        );
+        assert_eq!((channels["acc"][2], rate), (3.0, Some(1000.0)));
+    }
+    fs::write(&path, "t_s;acc\n0;1;5\n").unwrap();
+    assert!(message(&path, &Options::default()).contains("line 2 has 3 cells"));
+}
+
+#[test]
+fn csv_times_that_do_not_run_forwards_are_named_by_their_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    let rows = |times: &mut dyn Iterator<Item = i32>| -> String {
+        times.map(|t| format!("{t};1\n")).collect()
+    };
+    for (text, expected) in [
+        (
+            rows(&mut (0..9).rev()),
+            "the times run backwards: line 4 is at 0.007 s, the one before at 0.008 s",
+        ),
+        (
+            rows(&mut (0..9000).chain([8999])),
+            "line 9003 is at 8.999 s, the one before at 8.999 s",
+        ),
+        (
+            rows(&mut (0..9000)).replace("\n7000;", "\n\n7000;") + "5;1\n",
+            "line 9004 is at 0.005 s, the one before at 8.999 s",
+        ),
+    ] {
+        fs::write(&path, format!("Device A\nTime [msec];acc\n{text}")).unwrap();
+        let error = message(&path, &Options::default());
+        assert!(error.contains(expected), "{error}");
+    }
 }
 
 /// As data loggers write them: what they say of themselves first, units in a line of their own, dates for times.
@@ -324,6 +414,39 @@ fn big_endian_mat(rows: u32, columns: u32, numbers: &[f64]) -> Vec<u8> {
     file.extend(14_u32.to_be_bytes());
     file.extend((body.len() as u32).to_be_bytes());
     file.extend(body);
+    file
+}
+
+/// Variables of float64 in a MAT file, big-endian, each a column.
+fn big_endian_variables(variables: &[(&str, &[f64])]) -> Vec<u8> {
+    let mut file = vec![b' '; 124];
+    file.extend(b"\x01\0MI");
+    for (name, numbers) in variables {
+        let mut body = Vec::new();
+        let mut words = |words: &[u32]| body.extend(words.iter().flat_map(|w| w.to_be_bytes()));
+        words(&[
+            6,
+            8,
+            6,
+            0,
+            5,
+            8,
+            numbers.len() as u32,
+            1,
+            1,
+            name.len() as u32,
+        ]);
+        body.extend(name.bytes());
+        body.resize(body.len().next_multiple_of(8), 0);
+        body.extend(
+            [9, 8 * numbers.len() as u32]
+                .iter()
+                .flat_map(|w| w.to_be_bytes()),
+        );
+        body.extend(numbers.iter().flat_map(|x| x.to_be_bytes()));
+        file.extend([14, body.len() as u32].iter().flat_map(|w| w.to_be_bytes()));
+        file.extend(body);
+    }
     file
 }
 
