@@ -9,7 +9,7 @@ use crate::fitter::Fitter;
 use crate::recorded::is_of_pressures;
 use crate::model::Model;
 use crate::search::hypothesis::{Amended, Hypothesis, View, added, of_kinds};
-use crate::search::{MOST, Search, Sets};
+use crate::search::{MOST, Search, Sets, leaves_little};
 use calibrate::Problem;
 use calibrate::energies::TIMING;
 use calibrate::likelihood::Likelihood;
@@ -90,7 +90,7 @@ pub(crate) fn judged(
     let settled = settled.collect::<Result<Vec<_>, Error>>()?;
     let mut compared = Compared::new(nothing, settled.into_iter().flatten().collect());
     let mut believed = compared.believed()?;
-    if believed.set.set.is_empty()
+    if !leaves_little(&compared.nothing, &believed.set)
         && let Some(by_energies) = by_energies(fitter, problem, far, &compared.nothing)?
         && let found = by_energies.believed()?
         && !found.set.set.is_empty()
@@ -161,7 +161,7 @@ impl Compared {
     }
 }
 
-/// The machines of the lowest energies, judged by these: where no fit follows the ringing of any set, what lines leave says nothing
+/// The machines of the lowest energies, judged by these: where no fit follows the ringing of any set, what lines leave says little
 /// of them. None where sets were not searched far away.
 fn by_energies(
     fitter: &Fitter,

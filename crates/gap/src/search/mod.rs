@@ -257,7 +257,7 @@ impl Search<'_> {
 }
 
 /// Whether a set leaves no more than what the law of the right effect may be off by.
-fn leaves_little(nothing: &Hypothesis, set: &Hypothesis) -> bool {
+pub(crate) fn leaves_little(nothing: &Hypothesis, set: &Hypothesis) -> bool {
     left(&nothing.gap, &set.gap) < LITTLE
 }
 
