@@ -101,6 +101,10 @@ pub(super) struct Rod {
     inertia: Positive<Inertia>,
 }
 
+/// The largest polytropic exponent. That of an ideal gas without loss of heat is at most 5/3, of a monatomic one; losses
+/// make it smaller, leakage somewhat larger.
+const STEEPEST_EXPONENT: f64 = 2.0;
+
 impl Rod {
     /// The rod on a crank of radius `crank`.
     pub(super) fn resolve(&self, crank: Positive<Length>) -> Result<mechanism::Rod, Error> {
@@ -114,12 +118,30 @@ impl Rod {
             let expected = format_args!("a length up to that of the rod, {length}");
             return Err(Error::clash("centre_of_mass", expected).against("length"));
         }
+        self.check_inertia()?;
         Ok(mechanism::Rod {
             length: length.si(),
             mass: self.mass.si(),
             centre_of_mass: self.centre_of_mass.si(),
             inertia: self.inertia.si(),
         })
+    }
+}
+
+impl Rod {
+    /// Checks that the moment of inertia is at most mass × length², that of a body whose mass lies a rod's length away from
+    /// its centre of mass. A rod between its eyes has a quarter of it at most.
+    fn check_inertia(&self) -> Result<(), Error> {
+        let most = self.mass.si() * self.length.si() * self.length.si();
+        match Positive::<Inertia>::new(most) {
+            Some(most) if self.inertia.si() > most.si() => {
+                let expected =
+                    format_args!("a moment of inertia up to mass times length squared, {most}");
+                let error = Error::clash("inertia", expected).against("mass");
+                Err(error.against("length"))
+            }
+            _ => Ok(()),
+        }
     }
 }
 
@@ -186,12 +208,33 @@ struct CrankEnd {
 }
 
 impl Cylinder {
+    /// Checks that no polytropic exponent is above the largest one.
+    fn check_exponents(&self) -> Result<(), Error> {
+        let stated = [
+            ("exponent", Some(self.exponent)),
+            ("expansion_exponent", self.expansion_exponent),
+        ];
+        let too_large = |exponent: Number<AboveZero>| exponent.get() > STEEPEST_EXPONENT;
+        match stated
+            .iter()
+            .find(|(_, exponent)| exponent.is_some_and(too_large))
+        {
+            Some((key, _)) => {
+                let expected =
+                    format_args!("a polytropic exponent up to {STEEPEST_EXPONENT}, e.g. 1.3");
+                Err(Error::clash(*key, expected))
+            }
+            None => Ok(()),
+        }
+    }
+
     pub(super) fn resolve(&self) -> Result<gas::Cylinder, Error> {
         let (suction, discharge, piston) = (self.suction, self.discharge, self.piston_radius);
         if discharge.si() < suction.si() {
             let expected = format_args!("a pressure of at least suction, {suction}");
             return Err(Error::clash("discharge", expected).against("suction"));
         }
+        self.check_exponents()?;
         let crank_end = match &self.crank_end {
             Some(end) if end.rod_radius.si() >= piston.si() => {
                 let expected = format_args!("a length below piston_radius, {piston}");
@@ -215,7 +258,7 @@ impl Cylinder {
     }
 }
 
-/// Gravity in the plane of motion; 9.81 m/s^2 at −90 deg where the section is left out.
+/// Gravity in the plane of motion; 9.81 m/s^2 at -90 deg where the section is left out.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Gravity {
@@ -223,7 +266,7 @@ pub(super) struct Gravity {
     #[serde(default)]
     acceleration: Option<NonNegative<Acceleration>>,
     /// Direction in which things fall, counter-clockwise from the cylinder's axis (x, toward the
-    /// head): −90 deg for a horizontal machine (where it is left out), 180 deg for a vertical one
+    /// head): -90 deg for a horizontal machine (where it is left out), 180 deg for a vertical one
     /// with the cylinder on top.
     #[serde(default)]
     direction: Option<Quantity<Angle>>,
