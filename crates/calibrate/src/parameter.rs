@@ -344,6 +344,23 @@ mod tests {
     }
 
     #[test]
+    fn what_every_run_states_is_multiplied_by_one_factor() {
+        let tree = machine("single-stage.yaml");
+        let path = "cylinder.suction";
+        let suction = Parameter::at(&tree, path).unwrap().of_each_run();
+        assert_eq!(suction.path, "runs.*.cylinder.suction");
+        let third = suction.nominal / 3.0;
+        let (mut of_run, mut own) = (tree.clone(), tree.clone());
+        paths::set(&mut of_run, path, json!("0.3 MPa")).unwrap();
+        suction.write_for("run07", &mut of_run, third).unwrap();
+        let (written, _) = quantity(&of_run, path).unwrap();
+        assert!((written - 1e5).abs() < 1e-6, "{written}");
+        // It is no value of the machine.
+        suction.write(&mut own, third).unwrap();
+        assert_eq!(at(&own, path), at(&tree, path));
+    }
+
+    #[test]
     fn effects_are_searched_within_the_bounds_of_the_catalogue() {
         let mut tree = machine("single-stage.yaml");
         let section = json!({"discharge": "3 %", "discharge_phase": "0 deg"});

@@ -135,8 +135,8 @@ impl Problem {
         coordinates: &[f64],
     ) -> Result<Vec<(String, Value)>, Error> {
         let parameters = self.parameters.iter().zip(coordinates);
-        let own = parameters
-            .filter(|(parameter, _)| parameter.run.is_some() && parameter.holds_in(run));
+        let own =
+            parameters.filter(|(parameter, _)| parameter.run.is_some() && parameter.holds_in(run));
         let own: Vec<_> = own.collect();
         let mut tree = self.tree.clone();
         let stated = self.runs.iter().filter(|other| other.id == run);

@@ -50,8 +50,7 @@ impl Parameter {
             .iter()
             .filter_map(|run| Some((run, behind(run.id.as_str())?)));
         let named = rests.next().map(|(run, rest)| (run, rest, run.id.as_str()));
-        let Some((run, rest, name)) =
-            named.or(of_each.map(|(run, rest)| (run, rest, EACH_RUN)))
+        let Some((run, rest, name)) = named.or(of_each.map(|(run, rest)| (run, rest, EACH_RUN)))
         else {
             let ids: Vec<&str> = runs.iter().map(|run| run.id.as_str()).collect();
             return Err(Error::Parameter {

@@ -180,7 +180,10 @@ mod tests {
     fn the_nearest_are_kept() {
         let mut nearest = Nearest::new(5);
         (0..1000).for_each(|i| nearest.extend(&[f64::from(i * 617 % 1000)]));
-        assert_eq!(nearest.of_ranks(&[0, 1, 3, 3, 4]), [0.0, 1.0, 3.0, 3.0, 4.0]);
+        assert_eq!(
+            nearest.of_ranks(&[0, 1, 3, 3, 4]),
+            [0.0, 1.0, 3.0, 3.0, 4.0]
+        );
         let mut few = Nearest::new(5);
         few.extend(&[2.0, 1.0]);
         assert_eq!(few.of_ranks(&[0, 1]), [1.0, 2.0]);

@@ -158,7 +158,9 @@ pub fn explain(
 
 /// Whether energies decided on what was found: no fit follows the ringing.
 pub(crate) fn by_energies(found: &[Found]) -> bool {
-    found.iter().any(|one| one.effect.evidence.energies.is_some())
+    found
+        .iter()
+        .any(|one| one.effect.evidence.energies.is_some())
 }
 
 /// The values of a model's parameters, and their correlations, where no fit says how well they are known.

@@ -266,8 +266,7 @@ impl Hypothesis {
 
 /// What is against a set before the recordings are looked at, in nats: its freedom, and how far from what is usual it is.
 fn improbability(set: &[Amended], model: &Model, own: usize) -> f64 {
-    let mut prior =
-        freedom(&model.problem, model.x.len() - own) + CHOSEN * set.len() as f64;
+    let mut prior = freedom(&model.problem, model.x.len() - own) + CHOSEN * set.len() as f64;
     for (one, first) in set.iter().zip(firsts(&model.problem, set, own)) {
         prior += one.amendment.improbability(&model.problem, model.x[first]);
     }

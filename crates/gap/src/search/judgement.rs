@@ -6,8 +6,8 @@ use crate::criteria::{Evidence, NAMED, evidence, left, probability};
 use crate::error::{Error, possible};
 use crate::finding::{Found, Tried};
 use crate::fitter::Fitter;
-use crate::recorded::is_of_pressures;
 use crate::model::Model;
+use crate::recorded::is_of_pressures;
 use crate::search::hypothesis::{Amended, Hypothesis, View, added, of_kinds};
 use crate::search::{MOST, Search, Sets, leaves_little};
 use calibrate::Problem;
@@ -377,6 +377,44 @@ mod tests {
         assert!((force / 150.0 - 1.0).abs() < 0.02, "{force}");
         // It needs no allowance for a law that is off.
         assert!(judged.believed.model.timing < 1e-3);
+    }
+
+    #[test]
+    fn energies_name_what_they_fall_with_and_nothing_else() {
+        let hidden =
+            json!([{"sensor_gain": {"measure": "crosshead_acceleration", "error": "40 %"}}]);
+        let problem = problem_of(hidden);
+        let effort = effort();
+        let nothing = Model::at(problem.clone(), &[0.0], 0.0, &effort).unwrap();
+        let nothing = Hypothesis::new(Vec::new(), nothing, 1);
+        // The machine with what was hidden, and one with something else.
+        let far = |name: &str, first: f64| {
+            let amendment = of_kinds_named(&problem, &[name]).swap_remove(0);
+            let mut values = amendment.effect().unwrap().usual();
+            values[0] = first;
+            let set = vec![Amended { amendment, values }];
+            let with = added(&problem, &set).unwrap();
+            let model = Model::at(with, &[], TIMING, &effort).unwrap();
+            Hypothesis::new(set, model, 1)
+        };
+        let believed = |far: Vec<Hypothesis>| {
+            let judged = by_energies(&fitter(&effort), &problem, far, &nothing);
+            let compared = judged.unwrap().unwrap();
+            let Believed { set, without } = compared.believed().unwrap();
+            (set.labels(), set.gap.fitted / without.gap.fitted)
+        };
+        let [right, wrong] =
+            [("sensor_gain", 0.4), ("extra_clearance", 1e-5)].map(|(name, first)| far(name, first));
+        let label = right.labels();
+        let (labels, share) = believed(vec![right, wrong.clone(), nothing.clone()]);
+        assert_eq!(labels, label);
+        assert!(share < 0.2, "{share}");
+        assert_eq!(
+            believed(vec![wrong, nothing.clone()]).0,
+            Vec::<String>::new()
+        );
+        let without = by_energies(&fitter(&effort), &problem, Vec::new(), &nothing);
+        assert!(without.unwrap().is_none());
     }
 
     #[test]
