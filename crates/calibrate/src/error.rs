@@ -40,6 +40,21 @@ pub enum Error {
         /// The channel.
         channel: String,
     },
+    /// A channel of a sensor that records nothing.
+    #[error(
+        "run {run}: channel {channel} has the value {value} in each of its {count} samples: its sensor or cable is dead; leave the run \
+         or the channel out"
+    )]
+    Dead {
+        /// The run.
+        run: String,
+        /// The channel.
+        channel: String,
+        /// The value, SI.
+        value: f64,
+        /// Samples.
+        count: usize,
+    },
     /// A channel that was cut off by its range.
     #[error(
         "run {run}: channel {channel} is clipped: {count} samples in a row stand at its {limit} value {value}"

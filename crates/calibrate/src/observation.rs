@@ -220,6 +220,7 @@ impl Observation {
         let channels = chosen
             .into_iter()
             .map(|channel| {
+                not_dead(run, channel)?;
                 not_clipped(run, channel)?;
                 let (lines, deviations) = of_channel(&channel.samples)
                     .map_err(|source| signal_error(run, channel, source))?;
@@ -289,6 +290,19 @@ pub(crate) fn angle(run: &Run, first: &Channel) -> Result<CrankAngle, Error> {
         });
     }
     Ok(angle)
+}
+
+/// What a sensor records is never the same from the first sample to the last.
+fn not_dead(run: &Run, channel: &Channel) -> Result<(), Error> {
+    match &channel.samples[..] {
+        [value, others @ ..] if others.iter().all(|other| other == value) => Err(Error::Dead {
+            run: run.id.clone(),
+            channel: channel.column.clone(),
+            value: *value,
+            count: channel.samples.len(),
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// A pressure may stay at its greatest value while a valve is open; a vibration never does.
@@ -400,22 +414,33 @@ mod tests {
     }
 
     #[test]
-    fn the_limit_at_which_a_channel_is_clipped_is_named() {
-        let clipped = |limits: [f64; 2]| {
+    fn the_limit_at_which_a_channel_is_clipped_is_named_and_a_dead_one_is_called_dead() {
+        let run = Run {
+            id: "a".into(),
+            settings: Vec::new(),
+            speed_rpm: 600.0,
+            sample_rate: 1000.0,
+            is_timed: true,
+            crank_angle: None,
+            channels: Vec::new(),
+        };
+        let limited = |limits: [f64; 2]| {
             let wave = (0..100).map(|i| (0.1 * f64::from(i)).sin().clamp(limits[0], limits[1]));
-            let channel = Channel {
+            Channel {
                 column: "crosshead_acceleration_m_s2".into(),
                 samples: wave.collect(),
-            };
-            let run = Run {
-                id: "a".into(),
-                settings: Vec::new(),
-                speed_rpm: 600.0,
-                sample_rate: 1000.0,
-                is_timed: true,
-                crank_angle: None,
-                channels: Vec::new(),
-            };
+            }
+        };
+        let dead = not_dead(&run, &limited([2.0, 2.0]))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            dead.contains("the value 2 in each of its 100 samples"),
+            "{dead}"
+        );
+        let clipped = |limits: [f64; 2]| {
+            let channel = limited(limits);
+            not_dead(&run, &channel).unwrap();
             not_clipped(&run, &channel).unwrap_err().to_string()
         };
         let least = clipped([-0.5, 1.0]);

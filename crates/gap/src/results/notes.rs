@@ -34,6 +34,16 @@ pub(crate) fn notes(
                 .to_owned(),
         );
     }
+    let mut estimated = explanation.estimates.iter();
+    if explanation.verdict != Verdict::NoGap
+        && !estimated.any(|e| e.parameter.is_crank_angle_offset())
+    {
+        notes.push(
+            "The zero of the crank angle is taken as it was recorded: pressures by themselves do not determine it, \
+             as clearance volumes and exponents imitate it."
+                .to_owned(),
+        );
+    }
     let of_gas = |e: &Estimate| e.parameter.path.contains("cylinder.");
     if explanation.estimates.iter().any(of_gas) {
         // Where a valve stays shut there are no two lines that the polytropes lead to.

@@ -288,13 +288,17 @@ impl Regression {
     /// The Jacobian without column `which`, and then that column on the rows of each part.
     fn split(&self, which: usize) -> DMatrix<f64> {
         let others = self.jacobian.clone().remove_column(which);
+        // A derivative that is next to nothing beside the others is their rounding.
+        let least = FLAT.sqrt() * self.jacobian.column(which).norm();
         let first = others.ncols();
         let mut split = others.resize_horizontally(first + self.parts.len(), 0.0);
         for (p, rows) in self.parts.iter().enumerate() {
             let own = self.jacobian.view((rows.start, which), (rows.len(), 1));
-            split
-                .view_mut((rows.start, first + p), (rows.len(), 1))
-                .copy_from(&own);
+            if own.norm() > least {
+                split
+                    .view_mut((rows.start, first + p), (rows.len(), 1))
+                    .copy_from(&own);
+            }
         }
         split
     }
@@ -396,6 +400,18 @@ mod tests {
         let steps = regression.steps(1);
         assert!(steps[0].is_none() && steps[1].is_some());
         assert!(regression.agreement(1).is_none());
+    }
+
+    #[test]
+    fn a_part_whose_derivatives_are_rounding_shows_nothing_and_counts_for_nothing() {
+        let regression = Regression {
+            jacobian: DMatrix::from_column_slice(6, 1, &[1.0, 2.0, 2.0, 1.0, 1e-12, -1e-12]),
+            residuals: DVector::from_vec(vec![0.5, 1.0, 1.0, 0.5, 3.0, 1.0]),
+            parts: vec![0..2, 2..4, 4..6],
+        };
+        let steps = regression.steps(0);
+        assert!(steps[0].is_some() && steps[1].is_some() && steps[2].is_none());
+        assert_eq!(regression.agreement(0).unwrap().degrees, 1);
     }
 
     #[test]
