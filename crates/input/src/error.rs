@@ -275,6 +275,20 @@ impl Error {
         self
     }
 
+    /// Shows a value as the file has it: `own` gives, for a key, what messages show of the value that was read and of the
+    /// one in the file.
+    #[must_use]
+    pub(crate) fn showing(mut self, own: &dyn Fn(&str) -> Option<(String, String)>) -> Self {
+        if let Problem::Found { found, .. } = &mut *self.problem
+            && let Some((_, own)) = own(&self.key).filter(|(read, _)| read == found)
+        {
+            *found = own;
+        }
+        let others = std::mem::take(&mut self.company.others).into_iter();
+        self.company.others = others.map(|e| e.showing(own)).collect();
+        self
+    }
+
     /// Says what `value` is in the place of what it holds.
     pub(crate) fn unquoted(mut self, value: &Value) -> Self {
         if let Problem::Found { found, .. } = &mut *self.problem {
@@ -299,12 +313,35 @@ impl Error {
         self
     }
 
+    /// Says which of the known names an unknown one stands for: `known_as` gives it.
+    pub(crate) fn meaning(mut self, known_as: &dyn Fn(&str) -> Option<&'static str>) -> Self {
+        if let Problem::UnknownName {
+            found,
+            known,
+            nearest,
+        } = &mut *self.problem
+            && let Some(name) = known_as(found)
+            && known.iter().any(|known| known == name)
+        {
+            *nearest = Some(name.to_owned());
+        }
+        self
+    }
+
     /// Says where an unknown key belongs.
     pub(crate) fn belonging(mut self, words: &str) -> Self {
         if let Problem::UnknownKey { belongs, .. } = &mut *self.problem {
             *belongs = Some(words.to_owned());
         }
         self
+    }
+
+    /// Says of an unknown key that nothing stands for it here; none of the known keys was meant.
+    pub(crate) fn not_modelled(mut self, words: &str) -> Self {
+        if let Problem::UnknownKey { nearest, .. } = &mut *self.problem {
+            *nearest = None;
+        }
+        self.belonging(words)
     }
 
     /// Fills in what belongs in the place of a missing key, if that is still open.

@@ -9,7 +9,7 @@ pub use crate::kind::{
 use crate::dimension::Measure;
 use crate::error::quoted;
 use crate::kind::{KINDS, Reading};
-use crate::unit::{self, UnitError};
+use crate::unit::{self, Dimension, UnitError};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
 use serde::{Serialize, Serializer};
@@ -241,13 +241,20 @@ pub(crate) fn text<K: Kind>(si: Number<impl Bound>) -> Value {
 
 /// Schema of a text with a number and a unit.
 pub(crate) fn text_schema(expected: &str, negative: bool, examples: &[&str]) -> Schema {
-    let sign = if negative { "[+-]?" } else { "[+]?" };
+    let sign = if negative { "[+−-]?" } else { "[+]?" };
     json_schema!({
         "type": "string",
         "description": expected,
-        "pattern": format!("^\\s*{sign}([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+-]?[0-9]+)?\\s*[^0-9\\s.eE].*$"),
+        "pattern": format!("^\\s*{sign}([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+−-]?[0-9]+)?\\s*[^0-9\\s.eE].*$"),
         "examples": examples,
     })
+}
+
+/// The number after a minus sign that YAML takes for text; none for any other text.
+fn negative(text: &str) -> Option<f64> {
+    let is_one = text.starts_with(unit::MINUS);
+    let number = is_one.then(|| unit::plain_minus(text).parse().ok());
+    number.flatten()
 }
 
 /// A pure number within the bound `B`: an exponent, a coefficient.
@@ -306,7 +313,13 @@ impl<'de, B: Bound> Deserialize<'de> for Number<B> {
                 write!(f, "a plain number{}", B::WORDS)
             }
             fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
+                if let Some(number) = negative(text) {
+                    return self.visit_f64(number);
+                }
                 let found = match unit::parse(text) {
+                    Ok(share) if share.dimension == Dimension::NONE => {
+                        format!("{} ({} as a plain number)", quoted(text), share.si)
+                    }
                     Err(error @ (UnitError::Comma | UnitError::Thousands | UnitError::Number)) => {
                         describe_error(text, &error)
                     }

@@ -199,6 +199,21 @@ fn is_number(text: &str) -> bool {
 /// A decimal number as it is written: the digits with their point, and the power of ten.
 type Decimal<'a> = (&'a str, i32);
 
+/// The minus sign of typesetting (U+2212), which counts as a hyphen before a number.
+pub(crate) const MINUS: char = '−';
+
+/// Bytes of the sign at the start of `text`.
+fn sign_length(text: &str) -> usize {
+    let sign = text.chars().next();
+    sign.filter(|c| ['+', '-', MINUS].contains(c))
+        .map_or(0, char::len_utf8)
+}
+
+/// `text` with a hyphen for each minus sign, as programs read it.
+pub(crate) fn plain_minus(text: &str) -> String {
+    text.replace(MINUS, "-")
+}
+
 /// The number at the start of `text`, and what follows it.
 fn split_number(text: &str) -> Option<(Decimal<'_>, &str)> {
     let digits = |from: usize| {
@@ -206,7 +221,7 @@ fn split_number(text: &str) -> Option<(Decimal<'_>, &str)> {
         from + rest.iter().take_while(|b| b.is_ascii_digit()).count()
     };
     let byte = |at: usize| text.as_bytes().get(at).copied();
-    let start = usize::from(matches!(byte(0), Some(b'+' | b'-')));
+    let start = sign_length(text);
     let whole = digits(start);
     let end = match byte(whole) {
         Some(b'.') => digits(whole + 1),
@@ -217,10 +232,10 @@ fn split_number(text: &str) -> Option<(Decimal<'_>, &str)> {
     }
     let mantissa = &text[..end];
     if matches!(byte(end), Some(b'e' | b'E')) {
-        let sign = end + 1 + usize::from(matches!(byte(end + 1), Some(b'+' | b'-')));
+        let sign = end + 1 + sign_length(&text[end + 1..]);
         let stop = digits(sign);
         if stop > sign {
-            let exponent = text[end + 1..stop].parse().ok()?;
+            let exponent = plain_minus(&text[end + 1..stop]).parse().ok()?;
             return Some(((mantissa, exponent), &text[stop..]));
         }
     }
@@ -283,6 +298,7 @@ impl Scale {
     fn apply(&self, (mantissa, exponent): Decimal) -> Option<f64> {
         let whole = self.ten.floor();
         let exponent = exponent.checked_add(whole as i32)?;
+        let mantissa = plain_minus(mantissa);
         let shifted: f64 = format!("{mantissa}e{exponent}").parse().ok()?;
         let fraction = self.ten - whole;
         let shifted = if fraction == 0.0 {
@@ -345,6 +361,7 @@ fn split_exponent(factor: &str) -> Result<(&str, f64), UnitError> {
         .chars()
         .map(|c| match "⁰¹²³⁴⁵⁶⁷⁸⁹⁻".chars().position(|s| s == c) {
             Some(i) => ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', '-'][i],
+            None if c == MINUS => '-',
             None => c,
         })
         .collect();

@@ -36,13 +36,14 @@ const fn odd(name: &'static str, numerator: f64, denominator: f64, dimension: Di
     }
 }
 
-/// An inch, m; a pound, kg; a pound-force, 0.45359237 kg × 9.80665 m/s², in N (NIST Special Publication 811).
+/// An inch and a foot, m; a pound, kg; a pound-force, 0.45359237 kg × 9.80665 m/s², in N (NIST Special Publication 811).
 const INCH: f64 = 0.0254;
+const FOOT: f64 = 0.3048;
 const POUND: f64 = 0.453_592_37;
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
 
 /// All of them.
-pub(crate) const UNITS: [Unit; 33] = [
+pub(crate) const UNITS: [Unit; 40] = [
     unit("m", true, 0, Dimension::new(1.0, 0.0, 0.0, 0.0)),
     unit("g", true, -3, Dimension::new(0.0, 1.0, 0.0, 0.0)),
     unit("t", false, 3, Dimension::new(0.0, 1.0, 0.0, 0.0)),
@@ -74,17 +75,24 @@ pub(crate) const UNITS: [Unit; 33] = [
     ),
     odd("in", INCH, 1.0, Dimension::new(1.0, 0.0, 0.0, 0.0)),
     odd("inch", INCH, 1.0, Dimension::new(1.0, 0.0, 0.0, 0.0)),
+    odd("inches", INCH, 1.0, Dimension::new(1.0, 0.0, 0.0, 0.0)),
     // A thousandth of an inch.
     odd("mil", INCH, 1e3, Dimension::new(1.0, 0.0, 0.0, 0.0)),
-    odd("ft", 0.3048, 1.0, Dimension::new(1.0, 0.0, 0.0, 0.0)),
+    odd("mils", INCH, 1e3, Dimension::new(1.0, 0.0, 0.0, 0.0)),
+    odd("thou", INCH, 1e3, Dimension::new(1.0, 0.0, 0.0, 0.0)),
+    odd("ft", FOOT, 1.0, Dimension::new(1.0, 0.0, 0.0, 0.0)),
+    odd("foot", FOOT, 1.0, Dimension::new(1.0, 0.0, 0.0, 0.0)),
+    odd("feet", FOOT, 1.0, Dimension::new(1.0, 0.0, 0.0, 0.0)),
     odd("lb", POUND, 1.0, Dimension::new(0.0, 1.0, 0.0, 0.0)),
+    odd("lbs", POUND, 1.0, Dimension::new(0.0, 1.0, 0.0, 0.0)),
+    odd("pounds", POUND, 1.0, Dimension::new(0.0, 1.0, 0.0, 0.0)),
     odd("lbm", POUND, 1.0, Dimension::new(0.0, 1.0, 0.0, 0.0)),
     odd("lbf", POUND_FORCE, 1.0, Dimension::new(1.0, 1.0, -2.0, 0.0)),
     odd("kgf", GRAVITY, 1.0, Dimension::new(1.0, 1.0, -2.0, 0.0)),
     // The mechanical one: 550 foot-pounds-force a second.
     odd(
         "hp",
-        550.0 * 0.3048 * POUND_FORCE,
+        550.0 * FOOT * POUND_FORCE,
         1.0,
         Dimension::new(2.0, 1.0, -3.0, 0.0),
     ),

@@ -1,6 +1,7 @@
 //! Pressures over the ambient one: `20 barg` with `ambient_pressure: 1.013 bar`.
 
 use super::written::Written;
+use crate::error::quoted;
 use crate::quantity::{Kind, Positive, Pressure};
 use crate::tree::{find, put};
 use crate::unit::{Measure, parse_gauge};
@@ -24,12 +25,18 @@ pub(super) fn make_absolute(written: &mut Written) {
         for key in ABSOLUTE {
             let key = format!("{cylinder}.{key}");
             let text = find(&written.tree, &key).and_then(Value::as_str);
-            if let Some(above) = text.and_then(parse_gauge) {
+            let Some(text) = text.map(str::to_owned) else {
+                continue;
+            };
+            if let Some(above) = parse_gauge(&text) {
                 let measure = Measure {
                     si: above + ambient.si(),
                     dimension: Pressure::DIMENSION,
                 };
                 put(&mut written.tree, &key, measure.to_string().into());
+                let absolute = measure.si / 1e3;
+                let own = format!("{} ({absolute:.3} kPa absolute)", quoted(&text));
+                written.changed_from(&key, own);
             }
         }
     }

@@ -3,14 +3,16 @@
 use super::contact::{Contact, Friction};
 use super::surfaces::Surfaces;
 use crate::choice::{Ideal, Or};
-use crate::error::Error;
+use crate::error::{Error, join};
 use crate::quantity::{Clearance, Length, NonNegative, Positive, text_schema};
+use crate::tree::{find, put};
 use mechanism::joints::friction::FrictionLaw;
 use mechanism::joints::guide::{Guide, GuideClearance};
 use mechanism::joints::revolute::{self, Revolute};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use serde::de::{Deserializer, Unexpected, Visitor};
+use serde_json::Value;
 use std::borrow::Cow;
 use std::fmt;
 
@@ -142,7 +144,10 @@ impl Gap {
         if clearance.si() < size.si() {
             return Ok(clearance.si());
         }
-        let expected = format_args!("a length below {name}, {size}");
+        let across = Positive::<Length>::new(2.0 * size.si()).unwrap_or(size);
+        let expected = format_args!(
+            "a radial clearance below {name}, {size}, or a diametral one below {across}"
+        );
         Err(Error::clash("clearance", expected).against(name))
     }
 }
@@ -158,6 +163,45 @@ impl JsonSchema for Gap {
             "anyOf": [length, {"const": "ideal"}]
         })
     }
+}
+
+/// The tree with the word `ideal` in the place of each joint without a clearance of which nothing else is stated than
+/// sizes: the other keys have no effect, and may be left out.
+pub(super) fn name_ideal(mut tree: Cow<'_, Value>) -> Cow<'_, Value> {
+    let throws = tree["throws"].as_array().map_or(0, Vec::len);
+    let throws = (0..throws).map(|i| format!("throws.{i}.joints"));
+    for place in std::iter::once("joints".to_owned()).chain(throws) {
+        let joints = find(&tree, &place).and_then(Value::as_object);
+        let ideal = joints.into_iter().flatten();
+        let ideal = ideal.filter(|(_, joint)| says_ideal(joint));
+        let keys: Vec<String> = ideal.map(|(name, _)| join(&place, name)).collect();
+        for key in keys {
+            put(tree.to_mut(), &key, "ideal".into());
+        }
+    }
+    tree
+}
+
+/// Whether the section of a joint says that it has no clearance, and has nothing but sizes besides, each of which can
+/// be read.
+fn says_ideal(joint: &Value) -> bool {
+    let Some(section) = joint.as_object() else {
+        return false;
+    };
+    let is_none = |text: &str| {
+        text == "ideal"
+            || NonNegative::<Clearance>::parse(text).is_ok_and(|clearance| clearance.si() == 0.0)
+    };
+    let clearance = section.get("clearance").and_then(Value::as_str);
+    let size = |(key, value): (&String, &Value)| match (key.as_str(), value.as_str()) {
+        ("clearance", _) => true,
+        ("normal_clearance", Some(text)) => NonNegative::<Clearance>::parse(text).is_ok(),
+        ("journal_radius" | "half_length" | "half_height", Some(text)) => {
+            Positive::<Length>::parse(text).is_ok()
+        }
+        _ => false,
+    };
+    clearance.is_some_and(is_none) && section.iter().all(size)
 }
 
 /// A joint as the machine has it, and the clearance up to which it is healthy, m, where the file

@@ -229,7 +229,7 @@ impl Parts {
         ambient::make_absolute(&mut written);
         materials::replace(&mut written, &mut mistakes);
         mistakes.into_error()?;
-        let spread = shared::spread(&written.tree);
+        let spread = joints::name_ideal(shared::spread(&written.tree));
         match reader::read(&spread) {
             Ok(sections) => Ok(Self { written, sections }),
             Err(error) => Err(named(&written, error)),
@@ -246,13 +246,27 @@ fn resolve(written: &Written, sections: &Sections) -> Result<Resolved, Error> {
     resolved.map_err(|error| named(written, error))
 }
 
+/// What is to be said of a key for something that no machine file can state; none for any other key.
+fn not_modelled(name: &str) -> Option<&'static str> {
+    let is_tail_rod = name.starts_with("tail_rod") || name.starts_with("tailrod");
+    is_tail_rod.then_some(
+        "a tail rod is not modelled: leave the key out; the head end then has the area of the whole piston, which is too \
+         large by that of the tail rod",
+    )
+}
+
 /// `error` with the key that the file has, and with what belongs in the place of a missing one. A key of a throw
 /// may stand in the section that the throws share.
 fn named(written: &Written, error: Error) -> Error {
     let error = error.renamed(&|key| shared::written_key(&written.tree, key).to_owned());
     let key = error.key().to_owned();
     let error = error.expecting(|| schema::machine().walk(&key)?.expected());
-    let above = key.rsplit_once('.').map_or("", |(above, _)| above);
-    let error = error.suggesting(synonyms::names_in(above));
+    let (above, own) = key.rsplit_once('.').unwrap_or(("", &key));
+    let error = match not_modelled(own) {
+        Some(words) => error.not_modelled(words),
+        None => error.suggesting(synonyms::names_in(above)),
+    };
+    let error = error.meaning(&synonyms::joint_called);
+    let error = error.showing(&|key| written.own_value(key));
     error.renamed(&|key| written.original(key))
 }

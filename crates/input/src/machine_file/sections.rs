@@ -101,6 +101,10 @@ pub(super) struct Rod {
     inertia: Positive<Inertia>,
 }
 
+/// The largest polytropic exponent. That of an ideal gas without loss of heat is at most 5/3, of a monatomic one; losses
+/// make it smaller, leakage somewhat larger.
+const STEEPEST_EXPONENT: f64 = 2.0;
+
 impl Rod {
     /// The rod on a crank of radius `crank`.
     pub(super) fn resolve(&self, crank: Positive<Length>) -> Result<mechanism::Rod, Error> {
@@ -186,12 +190,33 @@ struct CrankEnd {
 }
 
 impl Cylinder {
+    /// Checks that no polytropic exponent is above the largest one.
+    fn check_exponents(&self) -> Result<(), Error> {
+        let stated = [
+            ("exponent", Some(self.exponent)),
+            ("expansion_exponent", self.expansion_exponent),
+        ];
+        let too_large = |exponent: Number<AboveZero>| exponent.get() > STEEPEST_EXPONENT;
+        match stated
+            .iter()
+            .find(|(_, exponent)| exponent.is_some_and(too_large))
+        {
+            Some((key, _)) => {
+                let expected =
+                    format_args!("a polytropic exponent up to {STEEPEST_EXPONENT}, e.g. 1.3");
+                Err(Error::clash(*key, expected))
+            }
+            None => Ok(()),
+        }
+    }
+
     pub(super) fn resolve(&self) -> Result<gas::Cylinder, Error> {
         let (suction, discharge, piston) = (self.suction, self.discharge, self.piston_radius);
         if discharge.si() < suction.si() {
             let expected = format_args!("a pressure of at least suction, {suction}");
             return Err(Error::clash("discharge", expected).against("suction"));
         }
+        self.check_exponents()?;
         let crank_end = match &self.crank_end {
             Some(end) if end.rod_radius.si() >= piston.si() => {
                 let expected = format_args!("a length below piston_radius, {piston}");
@@ -215,7 +240,7 @@ impl Cylinder {
     }
 }
 
-/// Gravity in the plane of motion; 9.81 m/s^2 at −90 deg where the section is left out.
+/// Gravity in the plane of motion; 9.81 m/s^2 at -90 deg where the section is left out.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Gravity {
@@ -223,7 +248,7 @@ pub(super) struct Gravity {
     #[serde(default)]
     acceleration: Option<NonNegative<Acceleration>>,
     /// Direction in which things fall, counter-clockwise from the cylinder's axis (x, toward the
-    /// head): −90 deg for a horizontal machine (where it is left out), 180 deg for a vertical one
+    /// head): -90 deg for a horizontal machine (where it is left out), 180 deg for a vertical one
     /// with the cylinder on top.
     #[serde(default)]
     direction: Option<Quantity<Angle>>,

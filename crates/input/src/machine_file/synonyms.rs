@@ -50,7 +50,7 @@ pub(crate) const SYNONYMS: &[Synonym] = synonyms! {
     Same "joints.small_end": "crosshead_pin" "wrist_pin" "joints.crosshead_pin" "joints.wrist_pin";
     Same "joints.guide": "crosshead_guide" "joints.crosshead_guide";
     Half "crank.radius": "stroke" "crank.stroke";
-    Same "crank.radius": "crank.throw";
+    Same "crank.radius": "crank.throw" "crank_radius";
     Rpm "speed": "rpm" "speed_rpm";
     Si "crank.radius": "crank_radius_m";
     HalfSi "crank.radius": "stroke_m";
@@ -207,6 +207,9 @@ fn key_at(synonym: &Synonym, is_throw: bool) -> &'static str {
 
 fn one(written: &mut Written, place: &str, synonym: &Synonym, key: &str, mistakes: &mut Mistakes) {
     let (from, to) = (join(place, synonym.name), join(place, key));
+    if from == to {
+        return;
+    }
     let Some(value) = find(&written.tree, &from) else {
         return;
     };
@@ -232,15 +235,17 @@ fn one(written: &mut Written, place: &str, synonym: &Synonym, key: &str, mistake
     }
     match meant(written, place, synonym, value) {
         Ok(meant) => {
-            let mut tree = written.tree.clone();
+            let (mut tree, own) = (written.tree.clone(), value.clone());
             take(&mut tree, &from);
             if put(&mut tree, &to, meant) {
                 written.tree = tree;
+                written.changed(&to, &own);
                 written.moved(from, to);
             }
         }
         Err(error) => {
             mistakes.note(written, error.under(&from));
+            written.wrong(to);
             take(&mut written.tree, &from);
         }
     }
@@ -263,11 +268,14 @@ fn diameter_of(key: &str) -> &'static str {
 
 /// The value of the key.
 fn meant(written: &Written, place: &str, synonym: &Synonym, value: &Value) -> Result<Value, Error> {
+    if let Some(error) = contradiction(synonym, value) {
+        return Err(error);
+    }
     match synonym.meaning {
         Meaning::Same => Ok(value.clone()),
         Meaning::Half if value == "ideal" => Ok(value.clone()),
         Meaning::Half => {
-            let whole: Quantity<Length, FromZero> = read(value)?;
+            let whole: Quantity<Length, FromZero> = read(&said_twice(synonym, value))?;
             Ok(text::<Length>(whole.si() / 2.0))
         }
         Meaning::Rpm => match value {
@@ -292,14 +300,84 @@ fn meant(written: &Written, place: &str, synonym: &Synonym, value: &Value) -> Re
         ),
         Meaning::OfStroke => {
             let share: Positive<Ratio> = read(value)?;
-            let radius = crank_radius(&written.tree, place).ok_or_else(|| {
-                let expected =
-                    "a crank radius or a stroke beside it, as it is a share of the swept volume";
-                Error::clash("", expected).against("crank.radius")
-            })?;
-            Ok(text::<Length>(share.si() * 2.0 * radius))
+            if share.si() > LARGEST_CLEARANCE {
+                let expected = "a percentage up to 500 % of the swept volume";
+                return Err(Error::unexpected("", crate::error::shown(value), expected));
+            }
+            match crank_radius(&written.tree, place) {
+                Some(radius) => Ok(text::<Length>(share.si() * 2.0 * radius)),
+                // A wrong one is a mistake by itself, which keeps the machine from being read.
+                None if is_radius_wrong(written, place) => Ok(text::<Length>(share.si())),
+                None => {
+                    let expected = "a crank radius or a stroke beside it, as it is a share of the swept volume";
+                    Err(Error::clash("", expected).against("crank.radius"))
+                }
+            }
         }
     }
+}
+
+/// The largest clearance volume, a share of the swept volume. Cylinders have 5 to 50 %, with open pockets up to about 200 %.
+const LARGEST_CLEARANCE: f64 = 5.0;
+
+/// A name that says how a clearance is measured.
+struct Sided {
+    /// How the name ends.
+    name: &'static str,
+    /// The word for it after a length, and the other word.
+    word: &'static str,
+    other: &'static str,
+    /// The key for what is measured in the other way.
+    instead: &'static str,
+}
+
+const SIDED: [Sided; 2] = [
+    Sided {
+        name: "diametral_clearance",
+        word: "diametral",
+        other: "radial",
+        instead: "clearance",
+    },
+    Sided {
+        name: "radial_clearance",
+        word: "radial",
+        other: "diametral",
+        instead: "diametral_clearance",
+    },
+];
+
+/// How `name` says that a clearance is measured.
+fn sided(name: &str) -> Option<&'static Sided> {
+    SIDED.iter().find(|sided| name.ends_with(sided.name))
+}
+
+/// The value without the word that its name says already: `diametral_clearance: 0.1 mm diametral`.
+fn said_twice(synonym: &Synonym, value: &Value) -> Value {
+    let length = sided(synonym.name).and_then(|sided| {
+        let length = value.as_str()?.trim_end().strip_suffix(sided.word)?;
+        length.ends_with(char::is_whitespace).then(|| length.trim())
+    });
+    length.map_or_else(|| value.clone(), Value::from)
+}
+
+/// That the value is measured in another way than its name says: `diametral_clearance: 0.1 mm radial`.
+fn contradiction(synonym: &Synonym, value: &Value) -> Option<Error> {
+    let Sided {
+        word,
+        other,
+        instead,
+        ..
+    } = sided(synonym.name)?;
+    let is_other = value.as_str()?.trim_end().ends_with(other);
+    let expected = format_args!("a {word} clearance; a {other} one belongs at the key {instead}");
+    is_other.then(|| Error::unexpected("", crate::error::shown(value), expected))
+}
+
+/// The joint that data sheets call `name`: `small_end` for `wrist_pin`.
+pub(super) fn joint_called(name: &str) -> Option<&'static str> {
+    let synonym = SYNONYMS.iter().find(|s| s.name == name)?;
+    let joint = synonym.key.strip_prefix("joints.")?;
+    (!joint.contains('.')).then_some(joint)
 }
 
 fn read<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, Error> {
@@ -311,13 +389,25 @@ fn text<K: Kind>(si: f64) -> Value {
     Measure { si, dimension }.to_string().into()
 }
 
-/// The crank radius of the throw at `place`, m.
-fn crank_radius(tree: &Value, place: &str) -> Option<f64> {
+/// The crank radius of the throw at `place`, as it is stated.
+fn stated_radius<'a>(tree: &'a Value, place: &str) -> Option<&'a Value> {
     let own = find(tree, &join(place, "crank_radius"));
-    let radius = own.or_else(|| find(tree, "crank.radius"))?.as_str()?;
+    own.or_else(|| find(tree, "crank.radius"))
+}
+
+/// The crank radius of the throw at `place`, m; none where it is missing or wrong.
+fn crank_radius(tree: &Value, place: &str) -> Option<f64> {
+    let radius = stated_radius(tree, place)?.as_str()?;
     Positive::<Length>::parse(radius)
         .ok()
         .map(|radius| radius.si())
+}
+
+/// Whether the file states a crank radius for the throw at `place` that is none.
+fn is_radius_wrong(written: &Written, place: &str) -> bool {
+    let stated = stated_radius(&written.tree, place).is_some_and(|radius| !radius.is_null());
+    let own = join(place, "crank_radius");
+    stated || written.is_wrong("crank.radius") || written.is_wrong(&own)
 }
 
 /// Whether a throw has a crank radius of its own.

@@ -18,8 +18,11 @@ pub(super) fn add(schema: &mut Value, defs: &mut Value) {
         if let Some(section) = section_at(schema, defs, above) {
             section["properties"][name] = described.clone();
         }
-        if above.is_empty() && !synonym.key.starts_with("speed") {
-            defs["ThrowSection"]["properties"][name] = described;
+        let of_throw = &mut defs["ThrowSection"]["properties"];
+        // A throw has its crank radius under the name that is a synonym at the top.
+        let is_key = of_throw.get(name).is_some();
+        if above.is_empty() && !synonym.key.starts_with("speed") && !is_key {
+            of_throw[name] = described;
         }
         let (above, key) = synonym.key.rsplit_once('.').unwrap_or(("", synonym.key));
         if !above.is_empty() {

@@ -53,7 +53,14 @@ fn units_of_data_sheets_are_what_they_are_defined_to_be() {
     for (text, si) in [
         ("1 in", INCH),
         ("1 ft", 0.3048),
+        ("1 inches", INCH),
+        ("1 feet", 0.3048),
+        ("1 foot", 0.3048),
+        ("1 lbs", POUND),
+        ("1 pounds", POUND),
         ("1 mil", 2.54e-5),
+        ("1 mils", 2.54e-5),
+        ("1 thou", 2.54e-5),
         ("1 psi", PSI),
         ("1 psia", PSI),
         ("1 ksi", 6_894_757.293_168_361),
@@ -229,6 +236,171 @@ fn a_gauge_pressure_needs_the_ambient_one() {
         "{message}"
     );
     assert!(message.contains("the key ambient_pressure"), "{message}");
+}
+
+/// What is said of the data sheet with `to` in the place of each `from`, a mistake a line.
+fn said_of(changes: &[(&str, &str)]) -> String {
+    let sheet = changes.iter().fold(SHEET.to_owned(), |sheet, (from, to)| {
+        assert!(sheet.contains(from), "{from}");
+        sheet.replacen(from, to, 1)
+    });
+    refusal(&sheet)
+}
+
+#[test]
+fn a_wrong_stroke_is_one_mistake() {
+    for stroke in ["stroke: 6", "crank: {radius: 3}", "crank_radius: wide"] {
+        let message = said_of(&[("stroke: 6 in", stroke)]);
+        assert_eq!(message.lines().count(), 1, "{message}");
+        assert!(message.starts_with("m.yaml:4:"), "{message}");
+    }
+    let none = said_of(&[("stroke: 6 in\n", "")]);
+    assert!(
+        none.contains("expected a crank radius or a stroke beside it"),
+        "{none}"
+    );
+}
+
+#[test]
+fn the_crank_radius_may_stand_at_the_top() {
+    let half = SHEET.replace("stroke: 6 in", "crank_radius: 3 in");
+    assert_eq!(resolve(&half).machine, resolve(SHEET).machine);
+}
+
+#[test]
+fn values_are_shown_as_they_are_written() {
+    for (from, to, expected) in [
+        (
+            "rod_diameter: 2.5 in",
+            "rod_diameter: 0 in",
+            "throws.0.rod_diameter: found '0 in', expected a length greater than 0",
+        ),
+        (
+            "back: 0 psig",
+            "back: -20 psig",
+            "cylinder.back: found '-20 psig' (-36.542 kPa absolute), expected a pressure of at least 0",
+        ),
+        (
+            "rpm: 740",
+            "rpm: 0",
+            "rpm: found 0, expected a rotational speed greater than 0",
+        ),
+    ] {
+        let message = said_of(&[(from, to)]);
+        assert!(message.contains(expected), "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+    }
+}
+
+#[test]
+fn a_clearance_is_measured_as_its_name_says() {
+    let diametral = "diametral_clearance: 0.006 in";
+    let twice = SHEET.replace(diametral, "diametral_clearance: 0.006 in diametral");
+    assert_eq!(resolve(&twice).machine, resolve(SHEET).machine);
+    for (to, expected) in [
+        (
+            "diametral_clearance: 0.006 in radial",
+            "found '0.006 in radial', expected a diametral clearance; a radial one belongs at the key clearance",
+        ),
+        (
+            "radial_clearance: 0.006 in diametral",
+            "found '0.006 in diametral', expected a radial clearance; a diametral one belongs at the key diametral_clearance",
+        ),
+        (
+            "diametral_clearance: 6 in",
+            "found '6 in', expected a radial clearance below journal_radius, 0.0635 m, or a diametral one below 0.127 m",
+        ),
+    ] {
+        let message = said_of(&[(diametral, to)]);
+        assert!(message.contains(expected), "{message}");
+    }
+}
+
+#[test]
+fn a_joint_without_clearance_needs_no_contact() {
+    let pin = "wrist_pin: {diameter: 3.5 in, clearance: 4 mil diametral, contact: {stiffness: 50 GN/m^1.5, damping: 2e4 N s/m, depth: 10 um}}";
+    let ideal = resolve(&SHEET.replace(pin, "wrist_pin: ideal"));
+    for joint in [
+        "wrist_pin: {clearance: ideal}",
+        "wrist_pin: {clearance: 0 mm}",
+        "wrist_pin: {diameter: 3.5 in, clearance: 0 mm, normal_clearance: 0.1 mm}",
+    ] {
+        assert!(SHEET.contains(pin));
+        assert_eq!(
+            resolve(&SHEET.replace(pin, joint)).machine,
+            ideal.machine,
+            "{joint}"
+        );
+    }
+    for (joint, expected) in [
+        ("wrist_pin: {clearance: 0.1 mm}", "missing"),
+        (
+            "wrist_pin: {clearance: ideal, colour: red}",
+            "colour: unknown key",
+        ),
+        (
+            "wrist_pin: {clearance: ideal, diameter: -1 in}",
+            "found '-1 in'",
+        ),
+    ] {
+        let message = said_of(&[(pin, joint)]);
+        assert!(message.contains(expected), "{message}");
+    }
+}
+
+#[test]
+fn what_no_machine_can_be_is_refused() {
+    for (from, to, expected) in [
+        (
+            "exponent: 1.26",
+            "exponent: 126",
+            "cylinder.exponent: found 126, expected a polytropic exponent up to 2",
+        ),
+        (
+            "clearance_volume: 16 %",
+            "clearance_volume: 1600 %",
+            "throws.0.clearance_volume: found '1600 %', expected a percentage up to 500 %",
+        ),
+    ] {
+        let message = said_of(&[(from, to)]);
+        assert!(message.contains(expected), "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+    }
+}
+
+#[test]
+fn a_tail_rod_is_no_misspelt_piston_rod() {
+    for (from, to) in [
+        (
+            "rod_diameter: 2.5 in",
+            "rod_diameter: 2.5 in, tail_rod_diameter: 2 in",
+        ),
+        ("back: 0 psig", "back: 0 psig, tail_rod_diameter: 2 in"),
+    ] {
+        let message = said_of(&[(from, to)]);
+        assert!(
+            message.contains("unknown key; a tail rod is not modelled: leave the key out"),
+            "{message}"
+        );
+        assert_eq!(message.lines().count(), 1, "{message}");
+    }
+}
+
+#[test]
+fn a_joint_of_an_effect_has_one_name() {
+    for (joint, meant) in [
+        ("crosshead_pin", "small_end"),
+        ("wrist_pin", "small_end"),
+        ("crank_pin", "big_end"),
+    ] {
+        let effects =
+            format!("effects:\n  - extra_clearance: {{joint: {joint}, change: 0.1 mm}}\n");
+        let message = refusal(&format!("{SHEET}{effects}"));
+        let expected = format!(
+            "found '{joint}', expected one of main, big_end, small_end; did you mean '{meant}'?"
+        );
+        assert!(message.contains(&expected), "{message}");
+    }
 }
 
 #[test]

@@ -96,7 +96,9 @@ messages! {
     not_a_number: "exponent: 1.4" => "exponent: .nan",
         "m.yaml:15:13: cylinder.exponent: found '.nan', expected a plain number greater than 0";
     text_for_a_pure_number: "exponent: 1.4" => "exponent: 5 %",
-        "m.yaml:15:13: cylinder.exponent: found '5 %', expected a plain number greater than 0";
+        "m.yaml:15:13: cylinder.exponent: found '5 %' (0.05 as a plain number), expected a plain number greater than 0";
+    percentage_for_a_share: "valve_loss: {suction: 0.18" => "valve_loss: {suction: 5 %",
+        "m.yaml:26:27: effects.0.valve_loss.suction: found '5 %' (0.05 as a plain number), expected a plain number of at least 0";
     negative_mass: "mass: 12 kg" => "mass: -12 kg",
         "m.yaml:6:9: rod.mass: found '-12 kg', expected a mass greater than 0 with its unit, e.g. '12 kg'";
     negative_clearance: "clearance: 0.1 mm" => "clearance: -0.1 mm",
@@ -168,7 +170,7 @@ messages! {
     discharge_below_suction: "discharge: 0.393 MPa" => "discharge: 0.093 MPa",
         "m.yaml:13:14: cylinder.discharge: found '0.093 MPa', expected a pressure of at least suction, 105000 Pa";
     clearance_wider_than_the_journal: "clearance: 0.1 mm" => "clearance: 51 mm",
-        "m.yaml:19:16: joints.big_end.clearance: found '51 mm', expected a length below journal_radius, 0.05 m";
+        "m.yaml:19:16: joints.big_end.clearance: found '51 mm', expected a radial clearance below journal_radius, 0.05 m, or a diametral one below 0.1 m";
     stiffness_of_another_exponent: "24 GN/m^1.5" => "24 GN/m",
         "m.yaml:21:39: joints.big_end.contact.stiffness: found '24 GN/m', expected a stiffness in N/m^1.5, because the exponent is 1.5";
     stiffness_is_no_stiffness: "24 GN/m^1.5" => "24 MPa",

@@ -54,6 +54,9 @@ fn texts_mean_exactly_their_decimal_number() {
         ("0 Pa", 0.0),
         ("3 bara", 3e5),
         ("3 bar(a)", 3e5),
+        ("−90 m", -90.0),
+        ("−1.5e−3 m", -1.5e-3),
+        ("2 m^−1", 2.0),
         ("20 gn", 20.0 * 9.80665),
         ("20 g0", 20.0 * 9.80665),
     ] {
@@ -92,7 +95,8 @@ fn texts_that_are_no_quantities() {
         ("0,1 mm", UnitError::Comma),
         ("5 RPM", unknown("RPM", Some("rpm"))),
         ("5 hz", unknown("hz", Some("Hz"))),
-        ("5 inches", unknown("inches", Some("inch"))),
+        ("5 inchs", unknown("inchs", Some("inch"))),
+        ("−", UnitError::NoNumber),
         ("5 krpm", unknown("krpm", Some("rpm"))),
     ] {
         assert_eq!(parse(text), Err(error), "{text}");
