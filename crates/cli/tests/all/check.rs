@@ -39,7 +39,7 @@ effects:
   - valve_loss: {suction: 0.18}
 ";
 
-const THROWS: &str = "\
+pub(crate) const THROWS: &str = "\
 name: two
 speed: 740 rpm
 crank: {radius: 75 mm}
