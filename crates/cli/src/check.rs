@@ -29,14 +29,24 @@ pub struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut all: Vec<Checked> = Vec::new();
+    let mut unreadable = Vec::new();
     for path in &arguments.files {
-        let checked = check_file(path, &KINDS)?;
-        let mistakes = checked.mistakes.iter();
-        mistakes.for_each(|mistake| eprintln!("error: {mistake}"));
-        all.push(checked);
+        match check_file(path, &KINDS) {
+            Ok(checked) => {
+                let mistakes = checked.mistakes.iter();
+                mistakes.for_each(|mistake| eprintln!("error: {mistake}"));
+                all.push(checked);
+            }
+            Err(error) => unreadable.push(error),
+        }
     }
     let summary: String = all.iter().map(ToString::to_string).collect();
-    arguments.format.print(&all, summary)?;
+    if !all.is_empty() {
+        arguments.format.print(&all, summary)?;
+    }
+    if let Some(error) = input::Error::all(unreadable) {
+        return Err(error.into());
+    }
     let mistakes = || all.iter().flat_map(|checked| &checked.mistakes);
     let files: BTreeSet<&String> = mistakes().map(|mistake| &mistake.file).collect();
     match mistakes().count() {

@@ -248,12 +248,20 @@ impl Bundle {
     }
 
     /// What the channels of run `index` are, in their order. `machine` is the content of the machine file, or
-    /// the bundle's own section. Its throws give the channels their names.
+    /// the bundle's own section; null where the machine is not known. Its throws give the channels their names.
     ///
     /// # Errors
     /// A channel whose unit or name is not understood.
     pub fn meanings(&self, index: usize, machine: &Value) -> Result<Vec<Meaning>, Error> {
-        let throws = throws(machine);
+        self.meanings_on(index, &throws(machine))
+    }
+
+    /// What the channels of run `index` are, in their order, on a machine whose throws have these names, as
+    /// [`meaning`] takes them.
+    ///
+    /// # Errors
+    /// A channel whose unit or name is not understood.
+    pub fn meanings_on(&self, index: usize, throws: &[String]) -> Result<Vec<Meaning>, Error> {
         let throws: Vec<&str> = throws.iter().map(String::as_str).collect();
         let channels = self.runs[index].channels.iter().enumerate();
         channels
@@ -270,8 +278,11 @@ impl Bundle {
     }
 }
 
-/// The names of the throws of a machine file's content; one empty name for a machine of one.
+/// The names of the throws of a machine file's content; one empty name for a machine of one, none for no machine.
 fn throws(machine: &Value) -> Vec<String> {
+    if machine.is_null() {
+        return Vec::new();
+    }
     let Some(throws) = machine["throws"].as_array() else {
         return vec![String::new()];
     };

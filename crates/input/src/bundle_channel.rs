@@ -4,7 +4,7 @@
 //! (`throw1.crosshead_acceleration_m_s2`), else from the channel's name in words: `throw1 crosshead
 //! acceleration`, `cylinder pressure`, `crank-end cylinder pressure`, `crank angle`, `tacho`, `time`.
 
-use crate::error::{Error, Problem};
+use crate::error::{Error, Problem, quoted};
 use crate::kind::KINDS;
 use crate::machine_file::unit_of_quantity;
 use crate::quantity::Number;
@@ -84,30 +84,25 @@ impl ToSi {
 /// is further away.
 const SLIPS: usize = 2;
 
-/// What a channel is in a machine whose throws have these names (one that is empty for a machine of
-/// one). Mistakes stand under the keys of the channel.
+/// What a channel is in a machine whose throws have these names: one that is empty in a machine of one throw, and none
+/// at all where the machine is not known, so that any name of a throw may stand before the rest. Mistakes stand under
+/// the keys of the channel.
 ///
 /// # Errors
 /// A unit that is unknown, or of the wrong dimension for what the channel is; a gauge pressure whose
-/// ambient pressure is not given; a name that is almost a known one.
+/// ambient pressure is not given; a name that is almost a known one, or a known one of a throw that the machine lacks.
 pub fn meaning(channel: &Channel, throws: &[&str]) -> Result<Meaning, Error> {
-    let known = known(throws);
+    let known = known(if throws.is_empty() { &[""] } else { throws });
     let exact = known.iter().find(|(column, ..)| *column == channel.column);
     let spoken = [&channel.name, &channel.column].map(|text| words(text));
     // The name says more than the column: a crank end's pressure may stand in a column `pressure`.
     let said = |text: &String| known.iter().find(|(_, names, _)| names.contains(text));
     let found = exact.or_else(|| spoken.iter().find_map(said));
     let Some((column, _, kind)) = found else {
-        let all = known.iter().flat_map(|(_, names, _)| names.first());
-        let all: Vec<&str> = all.map(String::as_str).collect();
-        // As many slips as the lengths differ by are needed at least: a name may be as long as a file.
-        let near = |known: &str| {
-            known.len().abs_diff(spoken[0].len()) <= SLIPS * char::MAX.len_utf8()
-                && strsim::damerau_levenshtein(&spoken[0], known) <= SLIPS
-        };
-        return match spoken[0].len() > 3 && all.iter().any(|known| near(known)) {
-            true => Err(Error::unknown_name("name", &channel.name, &all)),
-            false => Ok(Meaning::Other),
+        return match OfThrow::of(channel) {
+            Some(of_throw) if throws.is_empty() => of_throw.meaning(channel),
+            Some(of_throw) => Err(of_throw.unknown(throws)),
+            None => misspelt(channel, &spoken[0], &known, throws.is_empty()),
         };
     };
     Ok(match kind {
@@ -123,6 +118,121 @@ pub fn meaning(channel: &Channel, throws: &[&str]) -> Result<Meaning, Error> {
     })
 }
 
+/// Refuses a name, in words, that is almost a known one; behind any name of a throw, too, where that may be any.
+fn misspelt(
+    channel: &Channel,
+    spoken: &str,
+    known: &[Known],
+    any_throw: bool,
+) -> Result<Meaning, Error> {
+    let all = known.iter().filter_map(|(_, names, _)| names.first());
+    let all: Vec<&str> = all.map(String::as_str).collect();
+    if spoken.len() > 3 && all.iter().any(|name| is_near(spoken, name)) {
+        return Err(Error::unknown_name("name", &channel.name, &all));
+    }
+    let breaks = spoken.match_indices(' ').map(|(at, _)| &spoken[at + 1..]);
+    let mut rests = breaks.filter(|rest| any_throw && rest.contains(' '));
+    let of_throws: Vec<String> = known_of_throw("")
+        .filter_map(|(_, names, _)| names.first().cloned())
+        .collect();
+    let near = |rest: &str| of_throws.iter().any(|name| is_near(rest, name));
+    match rests.find(|rest| near(rest)) {
+        Some(rest) => {
+            let names: Vec<&str> = of_throws.iter().map(String::as_str).collect();
+            Err(Error::unknown_name("name", rest, &names))
+        }
+        None => Ok(Meaning::Other),
+    }
+}
+
+/// Whether `spoken` is `name` but for a few slips of the keyboard. As many as the lengths differ by are needed at
+/// least: a name may be as long as a file.
+fn is_near(spoken: &str, name: &str) -> bool {
+    name.len().abs_diff(spoken.len()) <= SLIPS * char::MAX.len_utf8()
+        && strsim::damerau_levenshtein(spoken, name) <= SLIPS
+}
+
+/// A channel of a throw with the words for the throw before it: `T1 cylinder pressure`. A channel of one word is left
+/// out: `oil pressure` is another one.
+struct OfThrow<'a> {
+    /// The key of the channel that says so, and its text.
+    key: &'static str,
+    text: &'a str,
+    /// The words for the throw, as they are written; empty where there are none.
+    throw: String,
+    /// The channel in words.
+    name: String,
+    /// Its column in a machine of one throw.
+    column: String,
+    quantity: Quantity,
+}
+
+impl<'a> OfThrow<'a> {
+    /// What the name of `channel`, or else its column, says; none where it is no channel of a throw.
+    fn of(channel: &'a Channel) -> Option<Self> {
+        let texts = [("name", &channel.name), ("column", &channel.column)];
+        texts
+            .into_iter()
+            .find_map(|(key, text)| Self::said(key, text))
+    }
+
+    fn said(key: &'static str, text: &'a str) -> Option<Self> {
+        let spoken = words(text);
+        let ends = |name: &String| {
+            let before = spoken.strip_suffix(name.as_str());
+            name.contains(' ') && before.is_some_and(|b| b.is_empty() || b.ends_with(' '))
+        };
+        let fitting = known_of_throw("").flat_map(|(column, names, kind)| {
+            let names = names.into_iter().filter(ends);
+            names.map(move |name| (column.clone(), name, kind))
+        });
+        let (column, name, kind) = fitting.max_by_key(|(_, name, _)| name.len())?;
+        let Kind::Measured(quantity) = kind else {
+            return None;
+        };
+        let before = spoken.len() - name.len();
+        let of_throw = spoken[..before].split_whitespace().count();
+        let throw: Vec<&str> = parts(text).take(of_throw).collect();
+        Some(Self {
+            key,
+            text,
+            throw: throw.join("_"),
+            name,
+            column,
+            quantity,
+        })
+    }
+
+    /// What it is where the throw may have any name.
+    fn meaning(&self, channel: &Channel) -> Result<Meaning, Error> {
+        Ok(Meaning::Measured {
+            column: format!("{}.{}", self.throw, self.column),
+            to_si: to_si(channel, self.quantity)?,
+        })
+    }
+
+    /// That the machine, whose throws have these names, has no such one.
+    fn unknown(&self, throws: &[&str]) -> Error {
+        let name = &self.name;
+        match (throws, self.throw.as_str()) {
+            ([""], _) => Error::unexpected(
+                self.key,
+                quoted(self.text),
+                format_args!("'{name}': the machine has one throw, without a name"),
+            ),
+            (_, "") => Error::unexpected(
+                self.key,
+                quoted(self.text),
+                format_args!(
+                    "the name of a throw before it, one of {}",
+                    throws.join(", ")
+                ),
+            ),
+            (_, throw) => Error::unknown_name(self.key, throw, throws),
+        }
+    }
+}
+
 /// What a column of this name and unit is called in a bundle: as its name says, else as its unit suggests in a machine of
 /// one throw; none where neither says anything.
 pub(crate) fn suggested_name(column: &str, unit: &str) -> Option<String> {
@@ -134,7 +244,7 @@ pub(crate) fn suggested_name(column: &str, unit: &str) -> Option<String> {
         offset: None,
         crank_angle_rad: None,
     };
-    if !matches!(meaning(&channel, &[""]), Ok(Meaning::Other)) {
+    if !matches!(meaning(&channel, &[]), Ok(Meaning::Other)) {
         return Some(words(column));
     }
     let dimension = recorded_unit(unit, true)?.dimension;
@@ -146,6 +256,16 @@ pub(crate) fn suggested_name(column: &str, unit: &str) -> Option<String> {
     ];
     let found = suggestions.iter().find(|(quantity, _)| of(*quantity));
     found.map(|(_, name)| (*name).to_owned())
+}
+
+/// The unit and the offset of a channel whose name has no meaning: a gauge pressure with its ambient pressure is one in
+/// the absolute unit. Without it, the unit stays as it is.
+pub fn unit_as_stated(channel: &Channel) -> (&str, f64) {
+    let offset = channel.offset.map_or(0.0, |offset| offset.get());
+    match unit::gauge(channel.unit.trim()) {
+        Some((_, absolute)) if channel.offset.is_some() => (absolute, offset),
+        _ => (&channel.unit, offset),
+    }
 }
 
 /// The standard atmosphere in the unit of a gauge; none for any other unit.
@@ -175,7 +295,7 @@ type Known = (String, Vec<String>, Kind);
 fn known(throws: &[&str]) -> Vec<Known> {
     let angles = SENSORS.iter().filter(|sensor| is_angle(sensor));
     let others = SENSORS.iter().filter(|sensor| !is_angle(sensor));
-    let of_machine = others.clone().filter(|sensor| !sensor.is_of_throw());
+    let of_machine = others.filter(|sensor| !sensor.is_of_throw());
     let mut all = vec![known_as("t_s", &["time", "t"], Kind::Time)];
     all.extend(angles.flat_map(|sensor| known_sensor(sensor, "")));
     all.push(known_as(
@@ -184,11 +304,15 @@ fn known(throws: &[&str]) -> Vec<Known> {
         Kind::Tacho,
     ));
     all.extend(of_machine.flat_map(|sensor| known_sensor(sensor, "")));
-    for throw in throws {
-        let of_throw = others.clone().filter(|sensor| sensor.is_of_throw());
-        all.extend(of_throw.flat_map(|sensor| known_sensor(sensor, throw)));
-    }
+    all.extend(throws.iter().flat_map(|throw| known_of_throw(throw)));
     all
+}
+
+/// The columns of the throw of this name that have a meaning.
+fn known_of_throw(throw: &str) -> impl Iterator<Item = Known> {
+    let others = SENSORS.iter().filter(|sensor| !is_angle(sensor));
+    let of_throw = others.filter(|sensor| sensor.is_of_throw());
+    of_throw.flat_map(move |sensor| known_sensor(sensor, throw))
 }
 
 fn is_angle(sensor: &Entry) -> bool {
@@ -249,15 +373,19 @@ fn words(text: &str) -> String {
         " m s2", " mm s", " in s", " m s", " ips", " kpa", " mpa", " pa", " mbar", " bar", " psig",
         " psia", " psi", " rad", " deg", " g", " s",
     ];
-    let text = text.split(['[', '(']).next().unwrap_or(text);
-    let apart = |c: char| c.is_whitespace() || "_-.,:/".contains(c);
     let lower = text.to_lowercase();
-    let parts: Vec<&str> = lower.split(apart).filter(|part| !part.is_empty()).collect();
-    let joined = parts.join(" ");
+    let joined = parts(&lower).collect::<Vec<_>>().join(" ");
     let ending = ENDINGS
         .iter()
         .find_map(|ending| joined.strip_suffix(ending));
     ending.map_or(joined.clone(), str::to_owned)
+}
+
+/// The words of a text before a unit in brackets.
+fn parts(text: &str) -> impl Iterator<Item = &str> {
+    let text = text.split(['[', '(']).next().unwrap_or(text);
+    let apart = |c: char| c.is_whitespace() || "_-.,:/".contains(c);
+    text.split(apart).filter(|part| !part.is_empty())
 }
 
 fn to_si(channel: &Channel, quantity: Quantity) -> Result<ToSi, Error> {
@@ -497,6 +625,114 @@ mod tests {
         };
         // 14.6 psi is 100 663.456 Pa.
         assert!((to_si.apply(0.0) - 100_663.456).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_throw_of_a_machine_that_is_not_known_may_have_any_name() {
+        for (name, of, unit, expected) in [
+            (
+                "T1 cylinder pressure",
+                "HE",
+                "psi",
+                Ok("T1.cylinder_pressure_pa"),
+            ),
+            (
+                "Frame 2 crank-end cylinder pressure",
+                "CE",
+                "bar",
+                Ok("Frame_2.cylinder_pressure_crank_end_pa"),
+            ),
+            (
+                "",
+                "T1.crosshead_acceleration_m_s2",
+                "m/s2",
+                Ok("T1.crosshead_acceleration_m_s2"),
+            ),
+            (
+                "T1 crosshead acceleration",
+                "a",
+                "G",
+                Err("unit: there is no unit 'G'"),
+            ),
+            (
+                "T1 crosshed acceleration",
+                "a",
+                "g",
+                Err("did you mean 'crosshead acceleration'?"),
+            ),
+            (
+                "T1 cylinder pressure",
+                "HE",
+                "psig",
+                Err("unit: psig counts from the ambient pressure"),
+            ),
+        ] {
+            let found = meaning(&channel(name, of, unit), &[]);
+            match (found, expected) {
+                (Ok(Meaning::Measured { column, .. }), Ok(expected)) => {
+                    assert_eq!(column, expected);
+                }
+                (Err(error), Err(expected)) => {
+                    assert!(error.to_string().contains(expected), "{error}");
+                }
+                (found, expected) => panic!("{name} {of}: {found:?}, not {expected:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn a_throw_that_the_machine_lacks_is_told() {
+        let two = ["T1", "T2"];
+        for (name, of, throws, expected) in [
+            (
+                "T9 cylinder pressure",
+                "HE",
+                &two[..],
+                "name: found 'T9', expected one of T1, T2",
+            ),
+            (
+                "",
+                "throw1.cylinder_pressure_pa",
+                &two,
+                "column: found 'throw1', expected one of T1, T2",
+            ),
+            (
+                "cylinder pressure",
+                "HE",
+                &two,
+                "the name of a throw before it, one of T1, T2",
+            ),
+            (
+                "T1 cylinder pressure",
+                "HE",
+                &[""],
+                "expected 'cylinder pressure': the machine has one throw",
+            ),
+        ] {
+            let error = meaning(&channel(name, of, "Pa"), throws).unwrap_err();
+            assert!(error.to_string().contains(expected), "{error}");
+        }
+        // What is no channel of a throw is none of a throw that is not there.
+        for name in ["oil pressure", "T9 oil pressure", "suction pressure"] {
+            assert_eq!(
+                meaning(&channel(name, "x", "bar"), &two),
+                Ok(Meaning::Other)
+            );
+        }
+    }
+
+    #[test]
+    fn a_unit_holds_whatever_the_name_says() {
+        for (unit, offset, expected) in [
+            ("psig", Some(14.4), ("psi", 14.4)),
+            ("psig", None, ("psig", 0.0)),
+            ("psi", Some(14.4), ("psi", 14.4)),
+            ("V", None, ("V", 0.0)),
+        ] {
+            let mut channel = channel("oil pressure", "x", unit);
+            channel.offset = offset.and_then(Number::new);
+            assert_eq!(unit_as_stated(&channel), expected);
+        }
     }
 
     #[test]

@@ -53,6 +53,30 @@ pub fn to_string(tree: &Value) -> Result<String, Error> {
     serde_saphyr::to_string(tree).map_err(|e| Error::new("", Problem::Other(e.to_string())))
 }
 
+/// The text of a file with this content.
+fn text(content: Vec<u8>) -> Result<String, Error> {
+    String::from_utf8(content).map_err(|error| {
+        let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let byte = error.as_bytes()[before.len()];
+        let lines = before.split(|b| *b == b'\n');
+        let last = lines.clone().next_back().unwrap_or_default();
+        let place = Place {
+            line: lines.count() as u64,
+            column: String::from_utf8_lossy(last).chars().count() as u64 + 1,
+        };
+        let is_utf_16 = [[0xff, 0xfe], [0xfe, 0xff]]
+            .iter()
+            .any(|mark| error.as_bytes().starts_with(mark));
+        let reason = match is_utf_16 {
+            true => "it is text in UTF-16: save it as UTF-8".to_owned(),
+            false => {
+                format!("it is not text in UTF-8 from the byte {byte:#04x} on: save it as UTF-8")
+            }
+        };
+        Error::new("", Problem::Other(reason)).at(place)
+    })
+}
+
 impl Document {
     /// The content of the file at `path`.
     ///
@@ -60,9 +84,11 @@ impl Document {
     /// Where the file cannot be read or is not YAML.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let name = path.display().to_string();
-        let text = files::read_text(path, files::LONGEST_TEXT).map_err(|error| {
+        let content = files::open(path).and_then(|file| files::content(file, files::LONGEST_TEXT));
+        let content = content.map_err(|error| {
             Error::new("", Problem::Unreadable(error.to_string())).in_file(&name)
         })?;
+        let text = text(content).map_err(|error| error.in_file(&name))?;
         Self::parse(&text, &name)
     }
 

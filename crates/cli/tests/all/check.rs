@@ -39,7 +39,7 @@ effects:
   - valve_loss: {suction: 0.18}
 ";
 
-const THROWS: &str = "\
+pub(crate) const THROWS: &str = "\
 name: two
 speed: 740 rpm
 crank: {radius: 75 mm}
@@ -150,6 +150,61 @@ fn files_without_mistakes_are_told_by_their_kind() {
     ] {
         assert!(said.contains(kind), "{said}");
     }
+}
+
+/// A file in another encoding is a mistake of that file, with the line; the others keep their results.
+#[test]
+fn a_file_that_is_not_utf_8_is_a_mistake_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let utf_16: Vec<u8> = MACHINE.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let latin_1 = MACHINE.replace("crank:", "# gr\u{f6}\u{df}e\ncrank:");
+    let latin_1: Vec<u8> = latin_1.chars().map(|c| c as u8).collect();
+    let files = [
+        ("good.yaml", MACHINE.as_bytes().to_vec(), None),
+        (
+            "latin.yaml",
+            latin_1,
+            Some(":3:5: it is not text in UTF-8 from the byte 0xf6 on: save it as UTF-8"),
+        ),
+        (
+            "wide.yaml",
+            [vec![0xff, 0xfe], utf_16].concat(),
+            Some(":1:1: it is text in UTF-16: save it as UTF-8"),
+        ),
+    ];
+    let path = |name: &str| folder.path().join(name);
+    for (name, content, _) in &files {
+        std::fs::write(path(name), content).unwrap();
+    }
+    let paths: Vec<_> = files.iter().map(|(name, ..)| path(name)).collect();
+    let output = crosshead(&["check", "--json"])
+        .args(&paths)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let all: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for (i, (name, _, mistake)) in files.iter().enumerate() {
+        let found = all[i]["mistakes"].as_array().unwrap();
+        assert_eq!(
+            found.len(),
+            usize::from(mistake.is_some()),
+            "{name}: {found:?}"
+        );
+        if let Some(mistake) = mistake {
+            let said = text(&output.stderr);
+            assert!(said.contains(&format!("{name}{mistake}")), "{said}");
+        }
+    }
+    // One that is not there leaves the others their results, too.
+    let lost = path("lost.yaml");
+    let output = crosshead(&["check", "--json"])
+        .args([&lost, &paths[0]])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let all: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(all.as_array().map(Vec::len), Some(1));
+    assert!(text(&output.stderr).contains("lost.yaml: cannot be read"));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `crosshead features` on datasets, bundles and files with something wrong.
 
+use crate::check::THROWS;
 use recordings::formats::parquet::read_table;
 use recordings::{Data, Table};
 use std::f64::consts::TAU;
@@ -309,6 +310,64 @@ fn a_bundle_tells_what_its_files_do_not() {
     );
     assert!(message.contains("did you mean 'speed_rpm'?"), "{message}");
     assert!(!folder.path().join("o.parquet").exists());
+}
+
+/// Unit and offset of a channel hold whatever its name says, and a throw of --machine gives the name.
+#[test]
+fn a_pressure_is_absolute_whatever_throw_its_name_states() {
+    let folder = tempfile::tempdir().unwrap();
+    let recording = csv("t_s,HE [psig],angle", 4000, |i| {
+        let angle = (1.8 * i as f64) % 360.0;
+        let pressure = 350.0 + 100.0 * angle.to_radians().cos();
+        format!("{},{pressure},{angle}", i as f64 / 2e3)
+    });
+    fs::write(folder.path().join("a.csv"), recording).unwrap();
+    fs::write(folder.path().join("machine.yaml"), THROWS).unwrap();
+    let bundle = |name: &str, column: &str, unit: &str| {
+        let text = format!(
+            "runs:\n- id: first\n  file: a.csv\n  channels:\n  - {{name: {name}, column: '{column}', unit: {unit}, offset: 14.4}}\n  - {{name: crank angle, column: angle, unit: deg}}\n"
+        );
+        fs::write(folder.path().join("recordings.yaml"), text).unwrap();
+    };
+    let known = ["--machine", "machine.yaml", "--top-dead-centre", "0 deg"];
+    let psi = 6894.757;
+    for (name, column, unit, machine) in [
+        ("throw2 cylinder pressure", "HE", "psi", true),
+        ("throw2 cylinder pressure", "HE", "psig", true),
+        ("throw2 cylinder pressure", "HE [psig]", "psig", true),
+        ("throw2 cylinder pressure", "HE", "psig", false),
+        ("oil pressure", "HE", "psig", true),
+        ("oil pressure", "HE", "psi", false),
+    ] {
+        bundle(name, column, unit);
+        let arguments = [&["."][..], if machine { &known[..] } else { &[] }].concat();
+        let table = features(folder.path(), &arguments);
+        let mean = real(&table, "HE.mean_pa", 0).unwrap();
+        let expected = 364.4 * psi;
+        assert!(
+            (mean / expected - 1.0).abs() < 1e-3,
+            "{name} {column} {unit}: {mean}"
+        );
+        let power = table.schema().position("HE.indicated_power_w").ok();
+        let power = power.and_then(|_| real(&table, "HE.indicated_power_w", 0));
+        assert_eq!(
+            power.is_some(),
+            name.starts_with("throw2") && machine,
+            "{name} {column} {unit}"
+        );
+    }
+    for name in ["throw9 cylinder pressure", "cylinder pressure"] {
+        bundle(name, "HE", "psi");
+        let all = [&["features", "."], &known[..], &["--out", "o.csv"]].concat();
+        let output = run(folder.path(), "crosshead", &all);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        assert!(
+            message.contains("recordings.yaml:5:12: runs.0.channels.0.name: found "),
+            "{message}"
+        );
+        assert!(message.contains("one of throw1, throw2"), "{message}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::{Error, KnownMachine, Unit, shaft};
 use input::bundle::{self, Bundle, Joint, Run};
-use input::bundle_channel::Meaning;
+use input::bundle_channel::{Channel, Meaning, unit_as_stated};
 use recordings::measured::{MeasuredChannel, MeasuredFile, Options};
 use recordings::{Column, Kind, Value};
 use std::collections::BTreeMap;
@@ -17,34 +17,45 @@ pub struct Input {
     pub(super) speed_rpm: Option<f64>,
     /// Labels from the bundle.
     pub(super) labels: Vec<(Column, Value)>,
-    /// What the bundle says that its columns are, with their units.
-    pub(super) meanings: BTreeMap<String, (Meaning, String)>,
+    /// What the bundle says of its columns.
+    pub(super) stated: BTreeMap<String, Stated>,
     /// The machine, where it is known.
     pub(super) machine: Option<KnownMachine>,
 }
 
 impl Input {
     /// What the bundle says of a channel.
-    pub(super) fn meaning(&self, channel: &MeasuredChannel) -> Option<&(Meaning, String)> {
-        let of = |name| self.meanings.get(name);
+    pub(super) fn stated(&self, channel: &MeasuredChannel) -> Option<&Stated> {
+        let of = |name| self.stated.get(name);
         of(&channel.column).or_else(|| of(&channel.name))
-    }
-
-    /// The model's column of the channel of this name, where the bundle states what it is.
-    pub(super) fn column_of(&self, channel: &str) -> Option<String> {
-        let of_channel = |column: &&String| {
-            column.as_str() == channel || recordings::measured::stem(column) == channel
-        };
-        match self.meanings.get(self.meanings.keys().find(of_channel)?) {
-            Some((Meaning::Measured { column, .. }, _)) => Some(column.clone()),
-            _ => None,
-        }
     }
 
     /// Opens the file.
     pub(super) fn open(&self) -> Result<MeasuredFile, Error> {
         MeasuredFile::open(&self.path, &self.options)
             .map_err(|error| Error::of_file(&self.path, error))
+    }
+}
+
+/// What a bundle says of a column.
+#[derive(Clone, Debug)]
+pub(super) struct Stated {
+    /// What it is.
+    pub(super) meaning: Meaning,
+    /// Its unit, absolute where the bundle gives the ambient pressure of a gauge.
+    pub(super) unit: String,
+    /// What is added to its numbers, in its unit.
+    pub(super) offset: f64,
+}
+
+impl Stated {
+    fn new(channel: &Channel, meaning: &Meaning) -> Self {
+        let (unit, offset) = unit_as_stated(channel);
+        Self {
+            meaning: meaning.clone(),
+            unit: unit.to_owned(),
+            offset,
+        }
     }
 }
 
@@ -113,7 +124,7 @@ pub fn inputs(paths: &[PathBuf], said: &Said) -> Result<Vec<Input>, Error> {
                     options: said.options(said.crank.bare_column().into_iter()),
                     speed_rpm: said.speed_rpm,
                     labels: Vec::new(),
-                    meanings: BTreeMap::new(),
+                    stated: BTreeMap::new(),
                     machine: said.machine.clone(),
                 },
             };
@@ -185,7 +196,10 @@ fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Error> {
 /// Recording `of` of the run `index` of a bundle, with the channels that stand in it.
 fn of_run(bundle: &Bundle, index: usize, of: usize, said: &Said) -> Result<Input, Error> {
     let run = &bundle.runs[index];
-    let meanings = bundle.meanings(index, &bundle.machine)?;
+    let meanings = match &said.machine {
+        Some(machine) => bundle.meanings_on(index, machine.throws())?,
+        None => bundle.meanings(index, &bundle.machine)?,
+    };
     let file = run
         .recordings()
         .nth(of)
@@ -225,8 +239,8 @@ fn of_run(bundle: &Bundle, index: usize, of: usize, said: &Said) -> Result<Input
         options,
         speed_rpm: speed.or(said.speed_rpm),
         labels: labels(run),
-        meanings: listed()
-            .map(|(c, meaning)| (c.column.clone(), (meaning.clone(), c.unit.clone())))
+        stated: listed()
+            .map(|(channel, meaning)| (channel.column.clone(), Stated::new(channel, meaning)))
             .collect(),
         machine: (said.machine.clone()).or_else(|| KnownMachine::of_bundle(bundle)),
     })

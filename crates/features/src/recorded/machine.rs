@@ -44,18 +44,20 @@ impl KnownMachine {
         Ok(Self::from_resolved(&file.resolve()?))
     }
 
+    /// The names of its throws; one empty name for a machine of one.
+    pub(super) fn throws(&self) -> &[String] {
+        &self.throws
+    }
+
     /// The chambers whose pressures are among these channels of a file, each under the name of its
-    /// channel. `stated` gives the model's column of a channel where a bundle states it.
-    pub(super) fn chambers_of<'a>(
-        &self,
-        channels: &'a [Scaled],
-        stated: impl Fn(&'a Scaled) -> Option<String>,
-    ) -> Vec<Chamber> {
+    /// channel.
+    pub(super) fn chambers_of(&self, channels: &[Scaled]) -> Vec<Chamber> {
         let throws: Vec<&str> = self.throws.iter().map(String::as_str).collect();
         let measured = channels.iter().filter(|c| c.role == Role::Measured);
         let pressures = measured.filter(|c| c.unit == "Pa");
-        let chamber = |channel: &'a Scaled| {
-            let column = stated(channel).or_else(|| by_name(&channel.name, &throws))?;
+        let chamber = |channel: &Scaled| {
+            let stated = channel.column.clone();
+            let column = stated.or_else(|| by_name(&channel.name, &throws))?;
             let chamber = self.chambers.iter().find(|c| c.column == column)?;
             Some(chamber.named(&channel.name))
         };

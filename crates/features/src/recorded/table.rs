@@ -1,7 +1,7 @@
 //! The table of features: its columns over all files, and its rows.
 
 use super::counted::counted;
-use super::inputs::Input;
+use super::inputs::{Input, Stated};
 use super::shaft::{self, Crank};
 use super::units::{Role, Scaled, scaled};
 use super::warnings::clipped;
@@ -113,14 +113,15 @@ impl Layout {
             let position = labels.position(column);
             position.map_err(|error| Error::in_file(&input.path, error))
         };
-        let meaning = |channel: &MeasuredChannel| input.meaning(channel).map(|(m, _)| m.clone());
+        let meaning = |channel: &MeasuredChannel| input.stated(channel).map(|s| s.meaning.clone());
         let reference = shaft::reference(&input.path, file, &said.crank, meaning)?;
         let channels = channels(input, file, said.unit.as_ref(), reference);
         let channels = channels.map_err(|reason| Error::in_file(&input.path, reason))?;
         let measured = || channels.iter().filter(|c| c.role == Role::Measured);
-        let chambers = input.machine.as_ref().map_or_else(Vec::new, |machine| {
-            machine.chambers_of(&channels, |channel| input.column_of(&channel.name))
-        });
+        let chambers = input
+            .machine
+            .as_ref()
+            .map_or_else(Vec::new, |machine| machine.chambers_of(&channels));
         let without_unit = measured().filter_map(without_unit).collect();
         let names = measured().map(|c| (c.name.as_str(), c.unit.as_str()));
         let own = |name: &str| file.labels().iter().position(|c| c.name == name);
@@ -223,23 +224,19 @@ fn channels(
             continue;
         }
         let mut channel = channel.clone();
-        let said = input.meaning(&channel);
-        if let Some((_, unit)) = said {
-            channel.unit = Some(unit.clone());
+        let said = input.stated(&channel);
+        if let Some(said) = said {
+            channel.unit = Some(said.unit.clone());
         }
-        let of_crank = matches!(
-            said,
-            Some((Meaning::CrankAngle(_) | Meaning::Tacho { .. }, _))
-        );
+        let of_crank = said
+            .is_some_and(|s| matches!(s.meaning, Meaning::CrankAngle(_) | Meaning::Tacho { .. }));
         if of_crank || (reference.is_some() && shaft::is_crank_angle(&channel)) {
             channels.push(Scaled::reference(Role::Unused, shaft::AS_IT_IS));
             continue;
         }
         let mut scaled = scaled(&channel, default_unit)?;
-        if let Some((Meaning::Measured { column, to_si }, _)) = said {
-            scaled.to_si = *to_si;
-            scaled.not_si = None;
-            scaled.unit = unit_of_column(column).to_owned();
+        if let Some(said) = said {
+            as_stated(&mut scaled, said);
         }
         let taken = |name: &str| {
             let mut measured = channels
@@ -256,6 +253,17 @@ fn channels(
         channels.push(scaled);
     }
     Ok(channels)
+}
+
+/// Takes over what a bundle says of a channel. Its offset holds whether or not its name has a meaning.
+fn as_stated(scaled: &mut Scaled, said: &Stated) {
+    scaled.to_si.offset = said.offset;
+    if let Meaning::Measured { column, to_si } = &said.meaning {
+        scaled.to_si = *to_si;
+        scaled.not_si = None;
+        scaled.unit = unit_of_column(column).to_owned();
+        scaled.column = Some(column.clone());
+    }
 }
 
 /// The table of all files: the schema, and the layouts with their places in it.

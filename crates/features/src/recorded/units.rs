@@ -15,6 +15,8 @@ const STAY: [&str; 13] = [
 pub(super) struct Scaled {
     /// Name without its unit.
     pub(super) name: String,
+    /// The model's column of it, where a bundle states what it is.
+    pub(super) column: Option<String>,
     /// Unit as the features know it, empty where it is not known.
     pub(super) unit: String,
     /// How its numbers become those of the unit.
@@ -43,6 +45,7 @@ impl Scaled {
     pub(super) fn reference(role: Role, to_si: ToSi) -> Self {
         Self {
             name: "crank_angle".to_owned(),
+            column: None,
             unit: "rad".to_owned(),
             to_si,
             role,
@@ -118,6 +121,7 @@ pub(super) fn scaled(channel: &MeasuredChannel, default: Option<&Unit>) -> Resul
     };
     Ok(Scaled {
         name: name.to_owned(),
+        column: None,
         unit,
         to_si: times(factor),
         role: Role::Measured,
