@@ -1,7 +1,6 @@
 //! What is fitted: paths of the machine file, and the coordinates in which they are searched.
 
 use crate::error::Error;
-use crate::run_condition::EACH_RUN;
 use input::paths;
 use input::unit::{self, Dimension, Measure};
 use serde_json::Value;
@@ -25,6 +24,9 @@ pub struct Parameter {
     /// Least and greatest value, SI.
     pub bounds: [f64; 2],
 }
+
+/// Stands in place of a run's name where every run has what it states times the same factor: a gauge that is off.
+pub(crate) const EACH_RUN: &str = "*";
 
 /// The scale on which a parameter is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::observation::Run;
-use crate::parameter::{Parameter, Scale};
+use crate::parameter::{EACH_RUN, Parameter, Scale};
 use input::paths;
 use input::unit::{self, Dimension};
 use serde_json::Value;
@@ -10,8 +10,6 @@ use serde_json::Value;
 /// By how much the recorded crank angle is ahead of the crank, rad: a dead centre that was set wrong
 /// at the encoder. It is a parameter of every run, or of one: `runs.RUN.crank_angle_offset`.
 pub const CRANK_ANGLE_OFFSET: &str = "crank_angle_offset";
-/// Stands in place of a run's name where every run has what it states times the same factor: a gauge that is off.
-pub(crate) const EACH_RUN: &str = "*";
 /// Without bounds of its own it is searched over 5° to either side, of 0 and of where it is seen.
 const OFFSETS: [f64; 2] = [-5.0_f64.to_radians(), 5.0_f64.to_radians()];
 pub(crate) const ANGLE: Dimension = Dimension::new(0.0, 0.0, 0.0, 1.0);

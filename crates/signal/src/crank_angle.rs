@@ -213,7 +213,7 @@ fn smooth(y: &[f64], half: usize) -> Vec<f64> {
 }
 
 /// Values that are smoothed at a time, which stay in the nearest cache.
-const AT_A_TIME: usize = 512;
+const SMOOTHED_AT_A_TIME: usize = 512;
 
 /// The values of `y` that have `half` neighbours on either side. What neighbours differ by is added, each with the weight that
 /// it has in the fitted quadratic's value in the middle: sums of small numbers keep their digits.
@@ -223,7 +223,7 @@ fn smooth_between_ends(y: &[f64], half: usize, smoothed: &mut [f64]) {
         #[inline(always)]
         || {
             let mut first = half;
-            for smoothed in smoothed.chunks_mut(AT_A_TIME) {
+            for smoothed in smoothed.chunks_mut(SMOOTHED_AT_A_TIME) {
                 let here = &y[first..];
                 for j in 1..=half {
                     let weight = (sums.s4 - sums.s2 * (j * j) as f64) / sums.determinant();
