@@ -422,8 +422,8 @@ fn what_is_wrong_with_a_signal_stands_beside_its_features() {
         ),
         (
             "infinite.csv",
-            "missing",
-            "acc: sample 5 is not a finite number",
+            "warnings",
+            "acc: 1 missing sample bridged by a line",
         ),
         ("clipped.csv", "warnings", "acc: may be clipped"),
         (
