@@ -55,7 +55,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - grid:\n      joints: [[big_end]]\n      clearance: [0.1 mm, 80 mm]",
-        "sweep.yaml:7:27: cases.0.grid.clearance.1: found '80 mm', expected a length below journal_radius, 0.05 m",
+        "sweep.yaml:7:27: cases.0.grid.clearance.1: found '80 mm', expected a radial clearance below journal_radius, 0.05 m, or a diametral one below 0.1 m",
     ),
     (
         "cases:\n  - grid:\n      joints: [[], [big_end]]\n      clearance: [0.1 mm, 0.2]",
@@ -227,7 +227,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: joints.big_end.clearance, from: 0.1 mm, to: 80 mm}",
-        "sweep.yaml:6:91: bifurcations.0.to: found '0.08 m', expected a length below journal_radius, 0.05 m",
+        "sweep.yaml:6:91: bifurcations.0.to: found '0.08 m', expected a radial clearance below journal_radius, 0.05 m, or a diametral one below 0.1 m",
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: joints.big_end.clearance, from: 0.2 mm, to: 0.1 mm}",
