@@ -403,7 +403,7 @@ fn crank_radius(tree: &Value, place: &str) -> Option<f64> {
         .map(|radius| radius.si())
 }
 
-/// Whether the file states a crank radius for the throw at `place` that is none.
+/// Whether the file has something for the crank radius of the throw at `place` that cannot be read as one.
 fn is_radius_wrong(written: &Written, place: &str) -> bool {
     let stated = stated_radius(&written.tree, place).is_some_and(|radius| !radius.is_null());
     let own = join(place, "crank_radius");
