@@ -82,6 +82,7 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<ShutValve>, Error> {
             if observed.column.contains("crosshead_acceleration") {
                 acceleration(&observed.lines, predicted).map_err(of_channel)?;
             } else if observed.quantity().is_pressure() && has_mean(&observed.lines) {
+                pressure(&observed.lines, predicted).map_err(of_channel)?;
                 let recorded = recorded(&observed.lines, offset, machine.speed >= 0.0);
                 let valves = shut_valves(&machine.machine, &observed.column, &recorded);
                 let valves = valves.map_err(of_channel)?.into_iter();
@@ -178,6 +179,21 @@ fn acceleration(observed: &OrderLines, predicted: &OrderLines) -> Result<(), Str
     }
 }
 
+/// A pressure that falls while its end of the cylinder gets smaller is that of the other end. A valve that stays open leaves little
+/// of the first order, whose phase then says nothing.
+fn pressure(observed: &OrderLines, predicted: &OrderLines) -> Result<(), String> {
+    let [recorded, machine] = [observed, predicted].map(|lines| lines.amplitude[1]);
+    let apart = (recorded / machine).arg();
+    if apart.abs() <= FRAC_PI_2 || recorded.norm() < machine.norm() / FACTOR {
+        return Ok(());
+    }
+    Err(format!(
+        "its first order leads that of the machine by {:.0} deg: check that it is the pressure of this end of the cylinder \
+         and not of the other one, and that the crank angle is 0 at top dead centre",
+        apart.to_degrees()
+    ))
+}
+
 /// Whether a line is this many times what the machine gives because its sensor passes no slow changes: a high pass of first order
 /// passes cos φ of a line, which then leads by φ.
 fn is_high_passed(ratio: Complex64) -> bool {
@@ -235,6 +251,22 @@ mod tests {
             passed(1.4).conj(),
         ];
         assert!(!others.into_iter().any(is_high_passed));
+    }
+
+    #[test]
+    fn a_pressure_that_falls_where_the_machine_raises_it_is_of_the_other_end() {
+        let of = |first: Complex64| OrderLines {
+            amplitude: vec![3e5.into(), first],
+            variance: vec![0.0; 2],
+            revolutions: 30,
+        };
+        let machine = of(Complex64::from_polar(1e5, 0.4));
+        let turned =
+            |by: f64, times: f64| of(machine.amplitude[1] * Complex64::from_polar(times, by));
+        assert!(pressure(&turned(1.0, 1.4), &machine).is_ok());
+        assert!(pressure(&turned(3.0, 0.3), &machine).is_ok());
+        let reason = pressure(&turned(-3.0, 0.9), &machine).unwrap_err();
+        assert!(reason.contains("by -172 deg"), "{reason}");
     }
 
     #[test]

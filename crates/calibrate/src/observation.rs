@@ -17,6 +17,8 @@ use std::ops::Range;
 
 /// A recording that stands at its greatest or least value for this many samples is clipped.
 const CLIPPED: usize = 4;
+/// Share of a recording's range from which what neighbouring samples do not have in common is noise.
+const NOISE: f64 = 1e-5;
 /// Relative difference between stated and recorded speed that is a contradiction.
 pub(crate) const SPEED: f64 = 0.02;
 /// Orders that always count; higher ones do where they stand out of the noise.
@@ -305,12 +307,13 @@ fn not_dead(run: &Run, channel: &Channel) -> Result<(), Error> {
     }
 }
 
-/// A pressure may stay at its greatest value while a valve is open; a vibration never does.
+/// A vibration never stays at its greatest value, nor does a pressure in whose recording there is noise: while a valve is open, it
+/// may stay there only up to the noise.
 fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
-    if !channel.quantity().is_vibration() {
+    let samples = || channel.samples.iter().copied();
+    if !channel.quantity().is_vibration() && !is_noisy(&channel.samples) {
         return Ok(());
     }
-    let samples = || channel.samples.iter().copied();
     let extremes = [samples().reduce(f64::max), samples().reduce(f64::min)];
     for (value, limit) in extremes.into_iter().zip(["greatest", "least"]) {
         let value = value.unwrap_or(0.0);
@@ -330,6 +333,30 @@ fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// Whether most samples have noise that their resolution does not hide: a fourth difference beyond what [`NOISE`] of the range and
+/// two steps of the resolution give. A smooth pressure of 360 samples a revolution has 1e-7 of its range.
+fn is_noisy(samples: &[f64]) -> bool {
+    let steps = samples.windows(2).map(|w| (w[1] - w[0]).abs());
+    let resolution = steps
+        .filter(|step| *step > 0.0)
+        .fold(f64::INFINITY, f64::min);
+    let [least, greatest] = samples
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(*x), high.max(*x)]
+        });
+    let fourth = |w: &[f64]| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs();
+    let mut noise: Vec<f64> = samples.windows(5).map(fourth).collect();
+    if noise.is_empty() {
+        return false;
+    }
+    let middle = noise.len() / 2;
+    let (_, median, _) = noise.select_nth_unstable_by(middle, f64::total_cmp);
+    // The sum of the squared coefficients is 70; a median of absolute values is 0.67 of a standard deviation.
+    let deviation = *median / (70f64.sqrt() * 0.6745);
+    deviation > 2.0 * resolution && deviation > NOISE * (greatest - least)
 }
 
 /// All orders up to the last [`BAND`] whose mean power stands out of the noise. Choosing them one by
@@ -450,5 +477,23 @@ mod tests {
             greatest.ends_with("stand at its greatest value 0.5"),
             "{greatest}"
         );
+    }
+
+    /// A pressure of an ideal valve, with a noise and a resolution, all in parts of its range.
+    fn plateau(noise: f64, resolution: f64) -> Vec<f64> {
+        let sample = |i: u32| {
+            let wave = (f64::from(i) * TAU / 360.0).cos().min(0.5);
+            // Digits of a multiple of an irrational number scatter evenly.
+            let scatter = (f64::from(i) * 0.618_033_988_749_895).fract() - 0.5;
+            ((wave + noise * scatter) / resolution).round() * resolution
+        };
+        (0..3600).map(sample).collect()
+    }
+
+    #[test]
+    fn a_pressure_may_stay_at_its_greatest_value_where_there_is_no_noise_to_be_seen() {
+        assert!(!is_noisy(&plateau(0.0, 1e-12)) && !is_noisy(&plateau(0.0, 1e-3)));
+        assert!(!is_noisy(&plateau(1e-3, 1e-3)));
+        assert!(is_noisy(&plateau(1e-2, 1e-3)) && is_noisy(&plateau(1e-3, 1e-12)));
     }
 }
