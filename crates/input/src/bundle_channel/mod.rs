@@ -4,37 +4,23 @@
 //! (`throw1.crosshead_acceleration_m_s2`), else from the channel's name in words: `throw1 crosshead
 //! acceleration`, `cylinder pressure`, `crank-end cylinder pressure`, `crank angle`, `tacho`, `time`.
 
-use crate::error::{Error, Problem, quoted};
-use crate::kind::KINDS;
-use crate::machine_file::unit_of_quantity;
-use crate::quantity::Number;
-use crate::recorded_unit::{RecordedUnit, recorded_unit};
-use crate::unit::{self, Dimension, UnitError};
-use mechanism::declaration::Quantity;
-use serde::Deserialize;
-use simulate::sensors::{Entry, SENSORS};
-use std::path::PathBuf;
+mod channel;
+mod known;
+mod of_throw;
+mod si;
 
-/// A channel of a run.
-#[derive(Clone, Debug, Deserialize)]
-pub struct Channel {
-    /// What it is, in words.
-    #[serde(default)]
-    pub name: String,
-    /// Its column in the file.
-    pub column: String,
-    /// Its unit, e.g. `m/s2`.
-    pub unit: String,
-    /// Its file, where the run has several.
-    #[serde(default)]
-    pub file: Option<PathBuf>,
-    /// What is added to its numbers, in its unit: the ambient pressure of a gauge.
-    #[serde(default)]
-    pub offset: Option<Number>,
-    /// The crank angle at which the pulse of a tacho comes, rad.
-    #[serde(default)]
-    pub crank_angle_rad: Option<Number>,
-}
+pub use channel::Channel;
+pub use known::unit_of_column;
+pub(crate) use si::ambient_pressure;
+pub use si::{ToSi, unit_as_stated};
+
+use crate::error::Error;
+use crate::machine_file::unit_of_quantity;
+use crate::recorded_unit::recorded_unit;
+use known::{Kind, Known, known, known_of_throw, words};
+use mechanism::declaration::Quantity;
+use of_throw::OfThrow;
+use si::to_si;
 
 /// What a channel of a recording is.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,27 +45,6 @@ pub enum Meaning {
     Other,
 }
 
-/// A number in the unit of a channel becomes one in SI units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ToSi {
-    /// Added first, in the channel's unit.
-    pub offset: f64,
-    /// SI units in one of the channel's.
-    pub scale: f64,
-}
-
-impl ToSi {
-    /// The value in SI units.
-    pub fn apply(self, value: f64) -> f64 {
-        (value + self.offset) * self.scale
-    }
-
-    /// The value in the channel's unit.
-    pub fn back(self, si: f64) -> f64 {
-        si / self.scale - self.offset
-    }
-}
-
 /// Slips of the keyboard up to which a name is taken for a known one that is misspelt. `oil pressure`
 /// is further away.
 const SLIPS: usize = 2;
@@ -100,7 +65,10 @@ pub fn meaning(channel: &Channel, throws: &[&str]) -> Result<Meaning, Error> {
     let found = exact.or_else(|| spoken.iter().find_map(said));
     let Some((column, _, kind)) = found else {
         return match OfThrow::of(channel) {
-            Some(of_throw) if throws.is_empty() => of_throw.meaning(channel),
+            Some(of_throw) if throws.is_empty() => {
+                let (column, to_si) = of_throw.column(channel)?;
+                Ok(Meaning::Measured { column, to_si })
+            }
             Some(of_throw) => Err(of_throw.unknown(throws)),
             None => misspelt(channel, &spoken[0], &known, throws.is_empty()),
         };
@@ -152,87 +120,6 @@ fn is_near(spoken: &str, name: &str) -> bool {
         && strsim::damerau_levenshtein(spoken, name) <= SLIPS
 }
 
-/// A channel of a throw with the words for the throw before it: `T1 cylinder pressure`. A channel of one word is left
-/// out: `oil pressure` is another one.
-struct OfThrow<'a> {
-    /// The key of the channel that says so, and its text.
-    key: &'static str,
-    text: &'a str,
-    /// The words for the throw, as they are written; empty where there are none.
-    throw: String,
-    /// The channel in words.
-    name: String,
-    /// Its column in a machine of one throw.
-    column: String,
-    quantity: Quantity,
-}
-
-impl<'a> OfThrow<'a> {
-    /// What the name of `channel`, or else its column, says; none where it is no channel of a throw.
-    fn of(channel: &'a Channel) -> Option<Self> {
-        let texts = [("name", &channel.name), ("column", &channel.column)];
-        texts
-            .into_iter()
-            .find_map(|(key, text)| Self::said(key, text))
-    }
-
-    fn said(key: &'static str, text: &'a str) -> Option<Self> {
-        let spoken = words(text);
-        let ends = |name: &String| {
-            let before = spoken.strip_suffix(name.as_str());
-            name.contains(' ') && before.is_some_and(|b| b.is_empty() || b.ends_with(' '))
-        };
-        let fitting = known_of_throw("").flat_map(|(column, names, kind)| {
-            let names = names.into_iter().filter(ends);
-            names.map(move |name| (column.clone(), name, kind))
-        });
-        let (column, name, kind) = fitting.max_by_key(|(_, name, _)| name.len())?;
-        let Kind::Measured(quantity) = kind else {
-            return None;
-        };
-        let before = spoken.len() - name.len();
-        let of_throw = spoken[..before].split_whitespace().count();
-        let throw: Vec<&str> = parts(text).take(of_throw).collect();
-        Some(Self {
-            key,
-            text,
-            throw: throw.join("_"),
-            name,
-            column,
-            quantity,
-        })
-    }
-
-    /// What it is where the throw may have any name.
-    fn meaning(&self, channel: &Channel) -> Result<Meaning, Error> {
-        Ok(Meaning::Measured {
-            column: format!("{}.{}", self.throw, self.column),
-            to_si: to_si(channel, self.quantity)?,
-        })
-    }
-
-    /// That the machine, whose throws have these names, has no such one.
-    fn unknown(&self, throws: &[&str]) -> Error {
-        let name = &self.name;
-        match (throws, self.throw.as_str()) {
-            ([""], _) => Error::unexpected(
-                self.key,
-                quoted(self.text),
-                format_args!("'{name}': the machine has one throw, without a name"),
-            ),
-            (_, "") => Error::unexpected(
-                self.key,
-                quoted(self.text),
-                format_args!(
-                    "the name of a throw before it, one of {}",
-                    throws.join(", ")
-                ),
-            ),
-            (_, throw) => Error::unknown_name(self.key, throw, throws),
-        }
-    }
-}
-
 /// What a column of this name and unit is called in a bundle: as its name says, else as its unit suggests in a machine of
 /// one throw; none where neither says anything.
 pub(crate) fn suggested_name(column: &str, unit: &str) -> Option<String> {
@@ -258,189 +145,15 @@ pub(crate) fn suggested_name(column: &str, unit: &str) -> Option<String> {
     found.map(|(_, name)| (*name).to_owned())
 }
 
-/// The unit and the offset of a channel whose name has no meaning: a gauge pressure with its ambient pressure is one in
-/// the absolute unit. Without it, the unit stays as it is.
-pub fn unit_as_stated(channel: &Channel) -> (&str, f64) {
-    let offset = channel.offset.map_or(0.0, |offset| offset.get());
-    match unit::gauge(channel.unit.trim()) {
-        Some((_, absolute)) if channel.offset.is_some() => (absolute, offset),
-        _ => (&channel.unit, offset),
-    }
-}
-
-/// The standard atmosphere in the unit of a gauge; none for any other unit.
-pub(crate) fn ambient_pressure(unit: &str) -> Option<f64> {
-    let gauge = recorded_unit(unit, false).filter(|unit| unit.gauge)?;
-    let ambient = unit::parse("1 atm").ok()?.si / gauge.si;
-    Some((1e4 * ambient).round() / 1e4)
-}
-
 /// Whether a channel has the time of each sample.
 pub(crate) fn is_time(channel: &Channel) -> bool {
     matches!(meaning(channel, &[]), Ok(Meaning::Time))
 }
 
-#[derive(Clone, Copy)]
-enum Kind {
-    Time,
-    CrankAngle,
-    Tacho,
-    Measured(Quantity),
-}
-
-/// A column that has a meaning, with the words for it.
-type Known = (String, Vec<String>, Kind);
-
-/// The columns that have a meaning: those of the shaft, of the machine, and of each throw.
-fn known(throws: &[&str]) -> Vec<Known> {
-    let angles = SENSORS.iter().filter(|sensor| is_angle(sensor));
-    let others = SENSORS.iter().filter(|sensor| !is_angle(sensor));
-    let of_machine = others.filter(|sensor| !sensor.is_of_throw());
-    let mut all = vec![known_as("t_s", &["time", "t"], Kind::Time)];
-    all.extend(angles.flat_map(|sensor| known_sensor(sensor, "")));
-    all.push(known_as(
-        "tacho",
-        &["tacho", "tachometer", "keyphasor", "once per revolution"],
-        Kind::Tacho,
-    ));
-    all.extend(of_machine.flat_map(|sensor| known_sensor(sensor, "")));
-    all.extend(throws.iter().flat_map(|throw| known_of_throw(throw)));
-    all
-}
-
-/// The columns of the throw of this name that have a meaning.
-fn known_of_throw(throw: &str) -> impl Iterator<Item = Known> {
-    let others = SENSORS.iter().filter(|sensor| !is_angle(sensor));
-    let of_throw = others.filter(|sensor| sensor.is_of_throw());
-    of_throw.flat_map(move |sensor| known_sensor(sensor, throw))
-}
-
-fn is_angle(sensor: &Entry) -> bool {
-    sensor.declaration.quantity == Quantity::Angle
-}
-
-fn known_as(column: &str, names: &[&str], kind: Kind) -> Known {
-    let names = names.iter().map(|name| (*name).to_owned());
-    (column.to_owned(), names.collect(), kind)
-}
-
-/// The channels of a sensor on the throw of this name; the name is empty in a machine of one.
-fn known_sensor(sensor: &'static Entry, throw: &str) -> impl Iterator<Item = Known> + use<> {
-    let (column_of, of) = (throw.to_owned(), words(throw));
-    let declared = &sensor.declaration;
-    let kind = match is_angle(sensor) {
-        true => Kind::CrankAngle,
-        false => Kind::Measured(declared.quantity),
-    };
-    declared.channels.iter().map(move |channel| {
-        let names = channel.words.iter().map(|name| match of.is_empty() {
-            true => (*name).to_owned(),
-            false => format!("{of} {name}"),
-        });
-        (channel.column(&column_of), names.collect(), kind)
-    })
-}
-
-/// The dimension of a quantity, and what belongs in the place of a wrong unit.
-fn unit_of(quantity: Quantity) -> (Dimension, String) {
-    let (dimension, unit) = unit_of_quantity(quantity);
-    let examples = match quantity {
-        Quantity::Acceleration => "m/s2 or g",
-        Quantity::Velocity => "mm/s or in/s",
-        Quantity::Pressure => "Pa, bar or psi",
-        Quantity::Angle => "rad or deg",
-        _ => unit,
-    };
-    let kind = KINDS.iter().find(|kind| kind.dimension == dimension);
-    let words = kind.map_or("a number", |kind| kind.words);
-    (dimension, format!("{words}, e.g. {examples}"))
-}
-
-/// The SI unit of a column that the model has: that of its sensor; empty for any other column.
-pub fn unit_of_column(column: &str) -> &'static str {
-    let column = column.rsplit('.').next().unwrap_or(column);
-    let has_column = |sensor: &&Entry| {
-        let mut channels = sensor.declaration.channels.iter();
-        channels.any(|channel| channel.column == column)
-    };
-    let sensor = SENSORS.iter().find(has_column);
-    sensor.map_or("", |sensor| sensor.declaration.unit)
-}
-
-/// Lower case, words apart, without a unit in brackets or at the end of a column's name.
-fn words(text: &str) -> String {
-    const ENDINGS: [&str; 17] = [
-        " m s2", " mm s", " in s", " m s", " ips", " kpa", " mpa", " pa", " mbar", " bar", " psig",
-        " psia", " psi", " rad", " deg", " g", " s",
-    ];
-    let lower = text.to_lowercase();
-    let joined = parts(&lower).collect::<Vec<_>>().join(" ");
-    let ending = ENDINGS
-        .iter()
-        .find_map(|ending| joined.strip_suffix(ending));
-    ending.map_or(joined.clone(), str::to_owned)
-}
-
-/// The words of a text before a unit in brackets.
-fn parts(text: &str) -> impl Iterator<Item = &str> {
-    let text = text.split(['[', '(']).next().unwrap_or(text);
-    let apart = |c: char| c.is_whitespace() || "_-.,:/".contains(c);
-    text.split(apart).filter(|part| !part.is_empty())
-}
-
-fn to_si(channel: &Channel, quantity: Quantity) -> Result<ToSi, Error> {
-    let (dimension, expected) = unit_of(quantity);
-    let text = channel.unit.trim();
-    let refuse = |reason: String| Error::new("unit", Problem::Other(reason));
-    // The full scale of a WAV file, `50 m/s2`, leads with a number.
-    let (size, text) = match text.split_once(' ') {
-        Some((size, unit)) if size.parse::<f64>().is_ok_and(f64::is_finite) => (size, unit.trim()),
-        _ => ("1", text),
-    };
-    let recorded = recorded_unit(text, quantity == Quantity::Acceleration);
-    if let Some(RecordedUnit {
-        gauge: true, name, ..
-    }) = &recorded
-        && channel.offset.is_none()
-    {
-        return Err(refuse(format!(
-            "{text} counts from the ambient pressure; give that as `offset`, in {name}, to make it absolute"
-        )));
-    }
-    let (found, scale) = match recorded {
-        Some(unit) => (unit.dimension, scaled(size, &unit)),
-        None => match unit::parse(&format!("{size} {text}")) {
-            Ok(measure) => (measure.dimension, measure.si),
-            Err(UnitError::NoUnit) => return Err(refuse(format!("no unit; expected {expected}"))),
-            Err(error) => return Err(refuse(format!("{error}; expected {expected}"))),
-        },
-    };
-    if found != dimension {
-        return Err(Error::unexpected(
-            "unit",
-            format!("'{}'", channel.unit),
-            expected,
-        ));
-    }
-    Ok(ToSi {
-        offset: channel.offset.map_or(0.0, |offset| offset.get()),
-        scale,
-    })
-}
-
-/// SI units in so many of a unit; exactly the decimal number where the unit is one of files.
-fn scaled(size: &str, unit: &RecordedUnit) -> f64 {
-    let exact = unit::parse(&format!("{size} {}", unit.name)).ok();
-    let exact = exact.filter(|measure| measure.dimension == unit.dimension);
-    exact.map_or_else(
-        || size.parse().unwrap_or(1.0) * unit.si,
-        |measure| measure.si,
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::quantity::Number;
     use crate::unit::GRAVITY;
     use std::f64::consts::TAU;
 
