@@ -8,6 +8,7 @@ use crate::fitter::effort::Effort;
 use crate::fitter::journal::Journal;
 use crate::mains_hum::remove_hum;
 use crate::recorded::Recorded;
+use crate::results::notes::leave_open;
 use crate::results::{RESULTS, Results};
 use calibrate::bundle_replay::BundleReplay;
 use calibrate::observation::Observation;
@@ -79,7 +80,7 @@ pub fn into_folder(
     let effort = Effort::new(&task.problem, held_out, EVALUATIONS, journal)?;
     let hum = remove_hum(&mut task.problem, &mut task.runs)?;
     let start = task.settings.start.as_deref();
-    let explanation = explain(&task.problem, start, &hum, &effort, report, watch)?;
+    let mut explanation = explain(&task.problem, start, &hum, &effort, report, watch)?;
     let [before, after] = [&explanation.baseline, &explanation.explained];
     let baseline = before.problem.fitted(&before.x)?;
     // What was taken off the recordings is in no simulation that is compared with them.
@@ -121,15 +122,13 @@ pub fn into_folder(
         &out.join(MACHINE),
         MachineFile::from_tree(&tree)?.to_yaml()?.as_bytes(),
     )?;
-    let results = Results::from_explanation(
-        &explanation,
-        &effort,
-        &Recorded {
-            gas: &gas,
-            shut_valves: &task.shut_valves,
-            noise: sensors.by_column,
-        },
-    )?;
+    let recorded = Recorded {
+        gas: &gas,
+        shut_valves: &task.shut_valves,
+        noise: sensors.by_column,
+    };
+    leave_open(&mut explanation, &recorded);
+    let results = Results::from_explanation(&explanation, &effort, &recorded)?;
     // Last, as what makes the folder whole.
     let text = serde_json::to_string_pretty(&results)?;
     WholeFile::write(&out.join(RESULTS), text.as_bytes())?;

@@ -1,7 +1,7 @@
 //! What must be known to judge an explanation, in sentences.
 
 use crate::amendment::candidate::Candidate;
-use crate::criteria::{NAMED, Verdict};
+use crate::criteria::{EXPLAINED, NAMED, Verdict, explains};
 use crate::explain::{Explanation, by_energies};
 use crate::fitter::effort::Effort;
 use crate::recorded::Recorded;
@@ -27,6 +27,7 @@ pub(crate) fn notes(
     let mut notes = shut_valve::sentences(recorded.shut_valves);
     notes.extend(unexplained(explanation));
     notes.extend(heard(explanation));
+    notes.extend(predicted_worse(explanation, effort));
     if effort.held_out.is_empty() && !explanation.found.is_empty() {
         notes.push(
             "No run was held out: there are too few. What was found has to hold in all of them at once; \
@@ -46,12 +47,7 @@ pub(crate) fn notes(
     }
     let of_gas = |e: &Estimate| e.parameter.path.contains("cylinder.");
     if explanation.estimates.iter().any(of_gas) {
-        // Where a valve stays shut there are no two lines that the polytropes lead to.
-        let opens = |gap: &&PressureGap| {
-            let mut shut = recorded.shut_valves.iter();
-            !shut.any(|shut| shut.run == gap.run && shut.channel == gap.column)
-        };
-        notes.extend(recorded.gas.iter().filter(opens).filter_map(together));
+        notes.extend(full_cycles(recorded).filter_map(together));
     }
     notes.extend(correlated(explanation));
     let unidentifiable = explanation.estimates.iter();
@@ -82,6 +78,20 @@ fn heard(explanation: &Explanation) -> Option<String> {
     ))
 }
 
+/// That runs which were predicted only show more than the fitted ones, in which there is no gap.
+fn predicted_worse(explanation: &Explanation, effort: &Effort) -> Option<String> {
+    let left = explanation.baseline.held_out?;
+    if explanation.verdict != Verdict::NoGap || left <= EXPLAINED {
+        return None;
+    }
+    Some(format!(
+        "Runs that are fitted are left with noise alone, but those that are predicted only ({}) with {left:.2} times the noise. Either \
+         they depend on something that the fitted runs do not determine, or something acts in them alone. `--hold-out` chooses which \
+         runs are predicted only, so that the others are fitted.",
+        effort.held_out.join(", ")
+    ))
+}
+
 /// Why nothing is named although there is a gap.
 fn unexplained(explanation: &Explanation) -> Option<String> {
     if explanation.verdict != Verdict::Unexplained {
@@ -105,6 +115,31 @@ fn unexplained(explanation: &Explanation) -> Option<String> {
         nearest.candidate.label(),
         nearest.probability,
     ))
+}
+
+/// The pressures whose valves both open: elsewhere there are no two lines that the polytropes lead to.
+fn full_cycles<'a>(recorded: &'a Recorded) -> impl Iterator<Item = &'a PressureGap> {
+    recorded.gas.iter().filter(|gap| {
+        let mut shut = recorded.shut_valves.iter();
+        !shut.any(|shut| shut.run == gap.run && shut.channel == gap.column)
+    })
+}
+
+/// Takes the intervals of clearance volumes and exponents where no curve determines both: there the law decides, and that of a model
+/// which leaves more than noise is not the machine's.
+pub(crate) fn leave_open(explanation: &mut Explanation, recorded: &Recorded) {
+    let mut cycles = full_cycles(recorded).peekable();
+    let open = cycles.peek().is_some() && cycles.all(|gap| together(gap).is_some());
+    if !open || explains(&explanation.explained) {
+        return;
+    }
+    for estimate in &mut explanation.estimates {
+        let path = &estimate.parameter.path;
+        if path.contains("cylinder.") && (path.ends_with("clearance") || path.contains("exponent"))
+        {
+            estimate.interval = None;
+        }
+    }
 }
 
 /// What a pressure by itself leaves open about clearance and exponents.
