@@ -4,8 +4,8 @@ use crate::Scalar;
 
 /// `W` independent numbers.
 pub trait Lanes<const W: usize>: Scalar<Plain = Self> {
-    /// So many machines, or fewer, take less time one by one than side by side. By the times of a revolution in the table
-    /// of tests/peers/README.md: a step in lanes takes that of 2.8 plain ones with AVX-512, and of 4.0 with AVX2.
+    /// So many machines, or fewer, take less time one by one than side by side: a step in lanes takes the time of 2.8 plain
+    /// ones with AVX-512, and of 4.0 with AVX2 (eight machines at 1e-6, tests/peers/README.md).
     const FEW: usize;
 
     /// The number in each lane.
