@@ -23,8 +23,8 @@ use super::lines::Lines;
 use super::written_number::{Written, written_number};
 use crate::Error;
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, Samples, StatedRate, TimeColumn, is_unit,
-    name_and_unit, seconds_of_unit, seconds_per_unit, selected,
+    MeasuredChannel, MeasuredFile, Options, Recording, Samples, StatedRate, TimeColumn, TimeUnit, is_unit,
+    name_and_unit, seconds_of_unit, selected, time_unit,
 };
 use std::collections::VecDeque;
 use std::path::Path;
@@ -125,19 +125,19 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     let said = options.sample_rate_hz.map(StatedRate::number);
     let stated = said.or(sample_rate);
     let time = time.map(|(i, time)| {
-        let (target, seconds_per_unit) = match time {
-            Time::Number(seconds) => (Target::Time, seconds),
+        let (target, unit) = match time {
+            Time::Number(unit) => (Target::Time, unit),
             Time::Date => {
                 if let Some(day) = day_column(&row, i) {
                     targets[day] = Target::Day;
                 }
-                (Target::Date, 1.0)
+                (Target::Date, TimeUnit::Seconds(1.0))
             }
         };
         targets[i] = target;
         TimeColumn {
             name: names[i].clone(),
-            seconds_per_unit,
+            unit,
             single_precision: false,
         }
     });
@@ -170,8 +170,8 @@ fn damaged(path: &Path, reason: impl ToString) -> Error {
 /// What a column of time holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Time {
-    /// Numbers, in a unit of so many seconds.
-    Number(f64),
+    /// Numbers in a unit.
+    Number(TimeUnit),
     /// Dates or times of day.
     Date,
 }
@@ -185,13 +185,13 @@ fn time_column(
 ) -> Option<(usize, Time)> {
     let called = |i: usize| {
         let (name, unit) = &headings[i];
-        seconds_per_unit(name, unit.as_deref()).filter(|_| numeric[i])
+        time_unit(name, unit.as_deref()).filter(|_| numeric[i])
     };
     let named = (0..headings.len()).find_map(|i| Some((i, Time::Number(called(i)?))));
     let by_unit = || {
         let unit = headings.first()?.1.as_deref()?;
         let seconds = seconds_of_unit(unit).filter(|_| numeric[0])?;
-        Some((0, Time::Number(seconds)))
+        Some((0, Time::Number(TimeUnit::Seconds(seconds))))
     };
     let dated = || {
         let at = row.iter().position(|cell| nanoseconds(cell).is_some())?;

@@ -112,3 +112,39 @@ fn what_is_not_read_of_labview_says_what_to_do() {
         assert!(error.contains(expected), "{error}");
     }
 }
+
+#[test]
+fn a_time_without_a_unit_is_in_the_unit_that_the_stated_rate_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    for (step, rate) in [
+        (0.04, Some(25_000.0)),
+        (40.0, Some(25_000.0)),
+        (0.04, Some(25.0)),
+        (0.0005, None),
+    ] {
+        let rows: String = (0..40)
+            .map(|i| format!("{},1\n", f64::from(i) * step))
+            .collect();
+        let rows = rows.as_str();
+        let expected = rate.unwrap_or(2000.0);
+        fs::write(&path, format!("Time,acc\n{rows}")).unwrap();
+        let (_, found) = read(&path, &options(&[], rate));
+        assert!(
+            (found.unwrap() / expected - 1.0).abs() < 1e-9,
+            "{step}: {found:?}"
+        );
+        if rate.is_some() {
+            fs::write(
+                &path,
+                format!("Sample rate: {expected} Hz\nTime,acc\n{rows}"),
+            )
+            .unwrap();
+            let (_, found) = read(&path, &Options::default());
+            assert!(
+                (found.unwrap() / expected - 1.0).abs() < 1e-9,
+                "{step}: {found:?}"
+            );
+        }
+    }
+}
