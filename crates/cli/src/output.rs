@@ -31,7 +31,7 @@ const LABELS: [(&str, &str); 4] = [
 /// Where it cannot be written.
 pub(crate) fn write_json(path: &Path, results: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(results)?;
-    Ok(WholeFile::write(path, text.as_bytes()).map(drop)?)
+    Ok(WholeFile::write(path, &text).map(drop)?)
 }
 
 /// Refuses to write where a file of `paths` is already there, and says which `option` writes elsewhere.
