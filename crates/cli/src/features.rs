@@ -1,6 +1,6 @@
 //! `crosshead features`: measured recordings become a table of features.
 
-use crate::output::hint;
+use crate::output::{hint, refuse_folder};
 use crate::progress::Progress;
 use crate::reading::Reading;
 use crate::result_format::ResultFormat;
@@ -93,12 +93,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The format of the table `out`.
 fn format(out: &Path) -> Result<TableFormat, Failure> {
+    refuse_folder(out)?;
     let shown = out.display();
-    if out.is_dir() {
-        return Err(Failure::input(format!(
-            "--out: {shown} is a folder, expected a file, e.g. features.parquet"
-        )));
-    }
     TableFormat::from_path(out).ok_or_else(|| {
         Failure::input(format!(
             "--out: found {shown}, expected a name that ends in .parquet or .csv"

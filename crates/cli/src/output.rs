@@ -12,7 +12,7 @@ use recordings::WholeFile;
 use serde::Serialize;
 use std::fmt::{Arguments, Write as _};
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, is_separator};
 
 /// Exit status of a program that the signal of a broken pipe has ended, as the shell reports it.
 const BROKEN_PIPE: i32 = 128 + 13;
@@ -49,6 +49,21 @@ pub(crate) fn refuse_existing<P: AsRef<Path>>(
         Some(path) => Err(Failure::input(format!(
             "{} is already there; --overwrite replaces it, {option} writes elsewhere",
             path.as_ref().display()
+        ))),
+    }
+}
+
+/// Refuses a folder as the file `out` to write: one that is there, or a name that ends as that of a folder does.
+///
+/// # Errors
+/// Where it is one.
+pub(crate) fn refuse_folder(out: &Path) -> Result<(), Failure> {
+    let named_so = out.as_os_str().to_string_lossy().ends_with(is_separator);
+    match named_so || out.is_dir() {
+        false => Ok(()),
+        true => Err(Failure::input(format!(
+            "--out: {} is a folder, expected a file",
+            out.display()
         ))),
     }
 }
