@@ -84,12 +84,10 @@ impl Clock {
                         let of_pair = (times[at] * scale, times[at + 1] * scale);
                         let back = not_ahead(&place(at as u64 + 1), of_pair);
                         let backwards = median < 0.0;
-                        let what = if backwards {
-                            "the times run backwards"
-                        } else {
-                            "the times are not evenly spaced"
-                        };
-                        return refuse(format!("{what}: {back}"));
+                        return refuse(match backwards {
+                            true => format!("the times run backwards: {back}"),
+                            false => format!("the times are not evenly spaced: {back}{DOUBT}"),
+                        });
                     }
                     let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
                     let most = steps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -158,7 +156,7 @@ impl Clock {
             return Err(Error::time(
                 path,
                 &self.column.name,
-                not_ahead(&place(sample), (last_s, time_s)),
+                not_ahead(&place(sample), (last_s, time_s)) + DOUBT,
             ));
         }
         Ok((excess > slack).then_some(excess))
@@ -200,6 +198,9 @@ fn seconds_per_unit(
         column.name
     ))
 }
+
+/// What a time that is not ahead of the one before says of its file.
+const DOUBT: &str = ": a time is wrong, or the file is damaged";
 
 /// That the later of two times, s, is not ahead of the earlier one.
 fn not_ahead(place: &str, (before_s, time_s): (f64, f64)) -> String {
@@ -315,7 +316,7 @@ mod tests {
         let message = clock.tick(path, 0.4, &sample).unwrap_err().to_string();
         assert_eq!(
             message,
-            "`a`, column `t`: sample 3 is at 0.4 s, the one before at 0.5022 s"
+            "`a`, column `t`: sample 3 is at 0.4 s, the one before at 0.5022 s: a time is wrong, or the file is damaged"
         );
         assert!(clock.tick(path, f64::NAN, &sample).is_err());
     }
