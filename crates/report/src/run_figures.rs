@@ -105,11 +105,11 @@ impl RunFigures<'_> {
             format!("{name} {}, {angle}°", text::prefixed(side.peak, "N"))
         };
         let verdict = match reversal.is_sufficient() {
-            true => "reverses as API 618 asks",
-            false => "reverses less than API 618 asks",
+            true => "",
+            false => "; below API 618",
         };
         let title = format!(
-            "{}{}; {}; {verdict}",
+            "{}{}; {}{verdict}",
             self.of_throw(throw),
             side("tension", reversal.tension),
             side("compression", reversal.compression),
