@@ -17,7 +17,7 @@ use sweep::reader::Like;
 #[command(after_help = "\
 FILE is CSV, WAV, MAT, HDF5, Parquet or MCAP, a bundle (a folder with recordings.yaml),
 a dataset of gen-dataset or a folder of crosshead simulate. The sample rate is read from a column
-of time (t_s, 'time [ms]'), units from the columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'.
+of time (t_s, time_ms), units from the columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'.
 The recordings.yaml in the folder of a file says what its channels are: crank angle, tacho,
 accelerations and pressures with their units.
 
