@@ -168,7 +168,7 @@ impl Bench<'_> {
             .write(machine, &made.clean, case.noise, case.number, &bundle)?;
         if self.keep {
             let text = input::yaml::to_string(&made.truth)?;
-            WholeFile::write(&folder.join(TRUTH), text.as_bytes())?;
+            WholeFile::write(&folder.join(TRUTH), &text)?;
         }
         let start = cpu_seconds();
         let calibration = Calibration::with_defaults(vec![bundle.clone()]);

@@ -229,8 +229,8 @@ impl<'a> Matrix<'a> {
     /// Files that cannot be written.
     pub fn write(&self, out: &Path) -> Result<(), Error> {
         let counts = serde_json::to_string_pretty(&self.counts())?;
-        WholeFile::write(&out.join(MATRIX[0]), counts.as_bytes())?;
-        WholeFile::write(&out.join(MATRIX[1]), self.markdown().as_bytes())?;
+        WholeFile::write(&out.join(MATRIX[0]), &counts)?;
+        WholeFile::write(&out.join(MATRIX[1]), &self.markdown())?;
         Ok(())
     }
 

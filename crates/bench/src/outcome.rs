@@ -224,7 +224,7 @@ impl Ledger {
         };
         let whole = text.rfind('\n').map_or(0, |end| end + 1);
         if whole < text.len() {
-            WholeFile::write(&self.path, &text.as_bytes()[..whole])?;
+            WholeFile::write(&self.path, &text[..whole])?;
         }
         let line = |(i, line): (usize, &str)| -> Result<Outcome, Error> {
             serde_json::from_str(line)

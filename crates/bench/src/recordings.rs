@@ -147,7 +147,7 @@ impl Recorder {
             runs: listed,
         };
         let text = input::yaml::to_string(&serde_json::to_value(content)?)?;
-        WholeFile::write(&folder.join(bundle::FILE), text.as_bytes())?;
+        WholeFile::write(&folder.join(bundle::FILE), &text)?;
         Ok(())
     }
 

@@ -126,7 +126,7 @@ impl Prepared {
             encoded: &task.encoded,
         })?;
         let text = calibrated(&task.problem, &fit, &sensors)?;
-        WholeFile::write(&machine, text.as_bytes())?;
+        WholeFile::write(&machine, &text)?;
         // Where the gas was not fitted, its gaps are not reported.
         let mut fitted = fit.estimates.iter().map(|e| &e.parameter.path);
         let gas = match fitted.any(|path| path.contains("cylinder.")) {
@@ -150,7 +150,7 @@ impl Prepared {
         let path = out.join(RESULTS);
         let text = serde_json::to_string_pretty(&results);
         let text = text.map_err(|error| Error::file(&path, error))?;
-        WholeFile::write(&path, text.as_bytes())?;
+        WholeFile::write(&path, &text)?;
         if fit.complete {
             earlier::remove_checkpoint(&out)?;
         }

@@ -1,6 +1,6 @@
 //! `crosshead features`: measured recordings become a table of features.
 
-use crate::output::hint;
+use crate::output::{hint, refuse_folder};
 use crate::progress::Progress;
 use crate::reading::Reading;
 use crate::result_format::ResultFormat;
@@ -17,7 +17,7 @@ use sweep::reader::Like;
 #[command(after_help = "\
 FILE is CSV, WAV, MAT, HDF5, Parquet or MCAP, a bundle (a folder with recordings.yaml),
 a dataset of gen-dataset or a folder of crosshead simulate. The sample rate is read from a column
-of time (t, t_s, time), units from the columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'.
+of time (t_s, time_ms), units from the columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'.
 The recordings.yaml in the folder of a file says what its channels are: crank angle, tacho,
 accelerations and pressures with their units.
 
@@ -93,12 +93,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The format of the table `out`.
 fn format(out: &Path) -> Result<TableFormat, Failure> {
+    refuse_folder(out)?;
     let shown = out.display();
-    if out.is_dir() {
-        return Err(Failure::input(format!(
-            "--out: {shown} is a folder, expected a file, e.g. features.parquet"
-        )));
-    }
     TableFormat::from_path(out).ok_or_else(|| {
         Failure::input(format!(
             "--out: found {shown}, expected a name that ends in .parquet or .csv"

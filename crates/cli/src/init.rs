@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use crate::choice::kind_of;
-use crate::output::{refuse_existing, warn};
+use crate::output::{refuse_existing, refuse_folder, warn};
 use ::calibrate::check::{BUNDLE, CALIBRATION};
 use ::sweep::calibration::{SWEEP_FILE, machine_of};
 use ::sweep::sweep_file;
@@ -98,6 +98,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_others(arguments)?;
     let (kind, template) = arguments.file;
     let out = arguments.out.clone().unwrap_or_else(|| kind.file.into());
+    refuse_folder(&out)?;
     let text = template(arguments, out.parent().unwrap_or(Path::new("")))?;
     refuse_existing([&out], arguments.overwrite, "--out FILE")?;
     let file = match arguments.overwrite {

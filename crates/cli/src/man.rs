@@ -42,7 +42,7 @@ fn write(command: &Command, out: &Path) -> Result<usize, Failure> {
     let mut text = Vec::new();
     let rendered = page.title(name.to_uppercase()).render(&mut text);
     rendered.map_err(|error| Failure::unwritten(&path, error))?;
-    WholeFile::write(&path, &text)?;
+    WholeFile::write(&path, &String::from_utf8_lossy(&text))?;
     let verbs = command.get_subcommands().filter(|verb| {
         // The verb `help` says what the pages say.
         !verb.is_hide_set() && verb.get_name() != "help"

@@ -12,7 +12,7 @@ use recordings::WholeFile;
 use serde::Serialize;
 use std::fmt::{Arguments, Write as _};
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, is_separator};
 
 /// Exit status of a program that the signal of a broken pipe has ended, as the shell reports it.
 const BROKEN_PIPE: i32 = 128 + 13;
@@ -31,7 +31,7 @@ const LABELS: [(&str, &str); 4] = [
 /// Where it cannot be written.
 pub(crate) fn write_json(path: &Path, results: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(results)?;
-    Ok(WholeFile::write(path, text.as_bytes()).map(drop)?)
+    Ok(WholeFile::write(path, &text).map(drop)?)
 }
 
 /// Refuses to write where a file of `paths` is already there, and says which `option` writes elsewhere.
@@ -49,6 +49,21 @@ pub(crate) fn refuse_existing<P: AsRef<Path>>(
         Some(path) => Err(Failure::input(format!(
             "{} is already there; --overwrite replaces it, {option} writes elsewhere",
             path.as_ref().display()
+        ))),
+    }
+}
+
+/// Refuses a folder as the file `out` to write: one that is there, or a name that ends as that of a folder does.
+///
+/// # Errors
+/// Where it is one.
+pub(crate) fn refuse_folder(out: &Path) -> Result<(), Failure> {
+    let named_so = out.as_os_str().to_string_lossy().ends_with(is_separator);
+    match named_so || out.is_dir() {
+        false => Ok(()),
+        true => Err(Failure::input(format!(
+            "--out: {} is a folder, expected a file",
+            out.display()
         ))),
     }
 }

@@ -1,7 +1,7 @@
 //! `crosshead report`: the HTML pages of a dataset, of a calibration, of wear, or of an explanation.
 
 use crate::Failure;
-use crate::output::hint;
+use crate::output::{hint, refuse_folder};
 use crate::progress::Progress;
 use ::report::dataset_page::{DatasetPage, Design};
 use ::report::folder_kind;
@@ -36,6 +36,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dir = &arguments.dir;
     let out = arguments.out.clone().unwrap_or_else(|| dir.join(PAGE));
+    refuse_folder(&out)?;
     let dataset = Progress::during("pages", || write(dir, &out))?;
     println!("{}", out.display());
     if let Some(Design::Grid(grids)) = dataset.map(|page| page.design) {

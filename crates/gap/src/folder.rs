@@ -120,7 +120,7 @@ pub fn into_folder(
     sensors.write(&mut tree)?;
     WholeFile::write(
         &out.join(MACHINE),
-        MachineFile::from_tree(&tree)?.to_yaml()?.as_bytes(),
+        &MachineFile::from_tree(&tree)?.to_yaml()?,
     )?;
     let recorded = Recorded {
         gas: &gas,
@@ -131,7 +131,7 @@ pub fn into_folder(
     let results = Results::from_explanation(&explanation, &effort, &recorded)?;
     // Last, as what makes the folder whole.
     let text = serde_json::to_string_pretty(&results)?;
-    WholeFile::write(&out.join(RESULTS), text.as_bytes())?;
+    WholeFile::write(&out.join(RESULTS), &text)?;
     std::fs::remove_file(&finished).map_err(|error| calibrate::Error::file(&finished, error))?;
     Ok(results)
 }

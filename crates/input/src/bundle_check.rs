@@ -4,7 +4,7 @@ use crate::bundle::{ANY_SPEED, Bundle};
 use crate::bundle_channel::Meaning;
 use crate::bundle_machine::from_bundle;
 use crate::error::{Error, Problem};
-use crate::machine_file::MachineFile;
+use crate::machine_file::{MachineFile, synonyms};
 use crate::paths;
 use crate::run_settings::run_settings;
 use crate::schema::bundle_schema;
@@ -28,7 +28,12 @@ pub fn check(folder: &Path, document: &Document) -> Result<(), Error> {
             let key = format!("runs.{i}");
             let meanings = bundle.meanings(i, machine.as_ref().unwrap_or(&Value::Null))?;
             if let Some(machine) = &machine {
-                at_run(machine, &with_speed(&run.section, &meanings), &key)?;
+                let name = |key: &str| match key.strip_prefix("machine.") {
+                    Some(own) => format!("machine.{}", synonyms::as_written(&bundle.machine, own)),
+                    None => key.to_owned(),
+                };
+                at_run(machine, &with_speed(&run.section, &meanings), &key)
+                    .map_err(|error| error.renamed(&name))?;
             }
             for file in 0..run.recordings().count() {
                 bundle.path_of_file(run, file)?;

@@ -111,7 +111,7 @@ impl Machine {
     }
 
     fn save(&self, path: PathBuf) -> PyResult<()> {
-        let written = WholeFile::write(&path, self.to_yaml()?.as_bytes());
+        let written = WholeFile::write(&path, &self.to_yaml()?);
         written
             .map(drop)
             .map_err(|error| raised(Failure::work(error)))

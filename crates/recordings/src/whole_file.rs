@@ -55,13 +55,16 @@ impl WholeFile {
         })
     }
 
-    /// Writes `content` into the file `destination`.
+    /// Writes `text` into the file `destination`. Its last line ends in a line break, as all others do.
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub fn write(destination: &Path, content: &[u8]) -> Result<FileRecord, Error> {
+    pub fn write(destination: &Path, text: &str) -> Result<FileRecord, Error> {
         let mut file = Self::create(&destination.with_extension("part"), destination)?;
-        file.write_all(content).map_err(Error::Write)?;
+        file.write_all(text.as_bytes()).map_err(Error::Write)?;
+        if !text.is_empty() && !text.ends_with('\n') {
+            file.write_all(b"\n").map_err(Error::Write)?;
+        }
         file.commit()
     }
 
@@ -171,6 +174,16 @@ mod tests {
         assert_eq!(record, FileRecord { bytes: 3, sha256 });
         assert_eq!(fs::read(&destination).unwrap(), b"abc");
         assert_eq!(names(folder.path()), ["a.parquet"]);
+    }
+
+    #[test]
+    fn the_last_line_of_a_text_ends() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        for (text, expected) in [("{}", "{}\n"), ("{}\n", "{}\n"), ("", "")] {
+            WholeFile::write(&path, text).unwrap();
+            assert_eq!(fs::read_to_string(&path).unwrap(), expected);
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::{Error, Rendered};
 use recordings::WholeFile;
 use std::fs;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Writes the pages of a dataset, each whole or not at all, in this order, and their figures into
@@ -40,12 +40,7 @@ pub fn write_pages(pages: &[(PathBuf, Rendered)]) -> Result<(), Error> {
 /// # Errors
 /// A file that cannot be written.
 pub fn write_page(out: &Path, text: &str) -> Result<(), Error> {
-    let written = WholeFile::create(&out.with_extension("part"), out).and_then(|mut file| {
-        file.write_all(text.as_bytes())
-            .map_err(recordings::Error::Write)?;
-        file.commit()
-    });
-    written.map(drop).map_err(Error::Write)
+    WholeFile::write(out, text).map(drop).map_err(Error::Write)
 }
 
 /// The names of the figures in the folder that a report has written.

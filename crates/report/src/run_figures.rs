@@ -4,7 +4,7 @@ use crate::over_crank_angle::over_crank_angle;
 use crate::plate::FigureFile;
 use figure::{Axis, Colour, Figure, Mark, Panel, Series, Share, in_rows};
 use signal::channel::Channel;
-use simulate::rod_load::SHORTEST_REVERSAL;
+use simulate::rod_load::Side;
 use simulate::{IndicatorCard, RodLoad};
 use sweep::run_analysis::{RunAnalysis, end_name};
 
@@ -100,15 +100,26 @@ impl RunFigures<'_> {
 
     fn rod_load(&self, throw: usize, load: &RodLoad) -> Panel {
         let reversal = load.reversal();
+        let side = |name: &str, side: Side| {
+            let angle = text::number(side.angle.to_degrees(), 3);
+            format!("{name} {}, {angle}°", text::prefixed(side.peak, "N"))
+        };
+        let verdict = match reversal.is_sufficient() {
+            true => "",
+            false => "; below API 618",
+        };
         let title = format!(
-            "{}rod load reversed for {}° (API 618: {}°), peak {} %",
+            "{}{}; {}{verdict}",
             self.of_throw(throw),
-            text::number(reversal.angle.to_degrees(), 3),
-            text::number(SHORTEST_REVERSAL.to_degrees(), 2),
-            text::number(100.0 * reversal.share, 3),
+            side("tension", reversal.tension),
+            side("compression", reversal.compression),
         );
         let curve = |name: &str, colour, mark, values: &[f64]| {
             Series::new(name, Colour::Class(colour), mark, over_revolution(values))
+        };
+        let band = |name: &str, colour, of: fn(f64, f64) -> f64| {
+            let outline = in_direction(load, of);
+            Series::new(name, Colour::Class(colour), Mark::Band, outline)
         };
         let zeros = load.zeros().into_iter();
         let zeros = zeros.map(|angle| [angle.to_degrees(), 0.0]);
@@ -117,7 +128,8 @@ impl RunFigures<'_> {
             x: Axis::crank_angle(),
             y: Axis::linear("load, tension positive (kN)"),
             series: vec![
-                Series::new("reversed", Colour::Class(3), Mark::Band, reversed(load)),
+                band("tension", 3, f64::max),
+                band("compression", 4, f64::min),
                 curve("gas", 1, Mark::Line, &load.gas),
                 curve("inertia", 2, Mark::Line, &load.inertia),
                 curve("combined", 0, Mark::BoldLine, &load.combined),
@@ -189,15 +201,10 @@ fn over_revolution(values: &[f64]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The outline of the load in its shorter direction, along the curve and back along zero.
-fn reversed(load: &RodLoad) -> Vec<[f64; 2]> {
-    let in_tension = load.combined.iter().filter(|load| **load > 0.0).count();
-    let tension_is_shorter = 2 * in_tension <= load.combined.len();
-    let shorter = load.combined.iter().map(|load| match tension_is_shorter {
-        true => load.max(0.0),
-        false => load.min(0.0),
-    });
-    let mut outline = over_revolution(&shorter.collect::<Vec<f64>>());
+/// The outline of the load in one direction, along the curve and back along zero; `of` takes the load in this direction, or 0.
+fn in_direction(load: &RodLoad, of: fn(f64, f64) -> f64) -> Vec<[f64; 2]> {
+    let side = load.combined.iter().map(|load| of(*load, 0.0));
+    let mut outline = over_revolution(&side.collect::<Vec<f64>>());
     outline.extend([[360.0, 0.0], [0.0, 0.0]]);
     outline
 }
@@ -207,11 +214,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_reversed_area_is_that_of_the_shorter_direction() {
+    fn the_area_of_a_direction_has_the_other_left_out() {
         // 90° in tension, the rest in compression.
         let gas = (0..360).map(|j| if j < 90 { 2000.0 } else { -1000.0 });
         let load = RodLoad::new(gas.collect(), vec![0.0; 360]);
-        let outline = reversed(&load);
+        let outline = in_direction(&load, f64::max);
         assert!(outline.iter().all(|[_, y]| (0.0..=2.0).contains(y)));
         let shaded = outline.iter().filter(|[_, y]| *y == 2.0).count();
         // The point at 360° repeats that at 0°.

@@ -30,21 +30,43 @@ pub struct RodLoad {
     pub combined: Vec<f64>,
 }
 
+/// The combined load in one of its two directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// Its peak, N, at least 0.
+    pub peak: f64,
+    /// The longest crank angle without a change of direction, rad; 0 where the load never has this direction.
+    pub angle: f64,
+}
+
 /// How the combined load reverses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reversal {
-    /// The shorter of the longest crank angles in tension and in compression, rad; 0 where the load has
-    /// one direction alone.
-    pub angle: f64,
-    /// The smaller of the peaks in tension and in compression over the larger; 0 where the load has one
-    /// direction alone.
-    pub share: f64,
+    /// In tension.
+    pub tension: Side,
+    /// In compression.
+    pub compression: Side,
 }
 
 impl Reversal {
+    /// The shorter of the two angles, rad.
+    pub fn angle(&self) -> f64 {
+        self.tension.angle.min(self.compression.angle)
+    }
+
+    /// The smaller of the two peaks over the larger; 0 where there is no load.
+    pub fn share(&self) -> f64 {
+        let (tension, compression) = (self.tension.peak, self.compression.peak);
+        let largest = tension.max(compression);
+        match largest > 0.0 {
+            true => tension.min(compression) / largest,
+            false => 0.0,
+        }
+    }
+
     /// Whether API 618 accepts it.
     pub fn is_sufficient(&self) -> bool {
-        self.angle >= SHORTEST_REVERSAL && self.share >= LOWEST_REVERSED_SHARE
+        self.angle() >= SHORTEST_REVERSAL && self.share() >= LOWEST_REVERSED_SHARE
     }
 }
 
@@ -101,15 +123,15 @@ impl RodLoad {
 
     /// How the combined load reverses.
     pub fn reversal(&self) -> Reversal {
-        let (tension, compression) = (self.max(), -self.min());
-        let share = tension.min(compression) / tension.max(compression);
         let [compressed, stretched] = self.longest();
         Reversal {
-            angle: compressed.min(stretched),
-            share: if share.is_finite() {
-                share.max(0.0)
-            } else {
-                0.0
+            tension: Side {
+                peak: self.max().max(0.0),
+                angle: stretched,
+            },
+            compression: Side {
+                peak: (-self.min()).max(0.0),
+                angle: compressed,
             },
         }
     }
@@ -135,6 +157,12 @@ impl RodLoad {
     /// The longest crank angles without a change of direction, in compression and in tension, rad.
     fn longest(&self) -> [f64; 2] {
         let changes = self.changes();
+        if changes.is_empty() {
+            return match self.max() > 0.0 {
+                true => [0.0, TAU],
+                false => [TAU, 0.0],
+            };
+        }
         let ends = changes.iter().skip(1).map(|(angle, _)| *angle);
         let ends = ends.chain(changes.first().map(|(angle, _)| angle + TAU));
         let mut longest = [0.0_f64; 2];

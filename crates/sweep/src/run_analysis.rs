@@ -61,11 +61,15 @@ pub struct RodLoadSummary {
     pub throw: String,
     /// Largest tension, N.
     pub max_n: f64,
-    /// Largest compression, N.
+    /// Largest compression, N, as a negative number.
     pub min_n: f64,
-    /// Crank angle over which the load is reversed, degrees.
+    /// Longest crank angle in tension, degrees.
+    pub tension_angle_deg: f64,
+    /// Longest crank angle in compression, degrees.
+    pub compression_angle_deg: f64,
+    /// The shorter of the two, degrees.
     pub reversal_angle_deg: f64,
-    /// Peak of the reversed load over that in the other direction.
+    /// The smaller of the peaks in tension and in compression over the larger.
     pub reversed_share: f64,
     /// Shortest angle that API 618 allows, degrees.
     pub least_reversal_angle_deg: f64,
@@ -137,8 +141,10 @@ impl RunAnalysis {
                 throw: throw(i),
                 max_n: load.max(),
                 min_n: load.min(),
-                reversal_angle_deg: reversal.angle.to_degrees(),
-                reversed_share: reversal.share,
+                tension_angle_deg: reversal.tension.angle.to_degrees(),
+                compression_angle_deg: reversal.compression.angle.to_degrees(),
+                reversal_angle_deg: reversal.angle().to_degrees(),
+                reversed_share: reversal.share(),
                 // A whole number of degrees, but for rounding.
                 least_reversal_angle_deg: SHORTEST_REVERSAL.to_degrees().round(),
                 least_reversed_share: LOWEST_REVERSED_SHARE,

@@ -27,7 +27,7 @@ impl fmt::Display for Results {
         if let Some(tried) = &self.corrections_tried {
             corrections(f, &self.corrections, tried)?;
         }
-        if !self.model_is_adequate {
+        if !self.model_is_adequate && self.complete {
             writeln!(
                 f,
                 "the model is wrong: it leaves {:.2} times the noise{}; above 1.5 no interval is known, and no value \

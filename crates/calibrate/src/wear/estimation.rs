@@ -137,12 +137,12 @@ impl Prepared {
         pictures::write(&self.out, &compare_models(models, &self.task.runs)?)?;
         let tree = problem.fitted(&concluded.x)?;
         let text = MachineFile::from_tree(&tree).and_then(|file| file.to_yaml())?;
-        WholeFile::write(&machine, text.as_bytes())?;
+        WholeFile::write(&machine, &text)?;
         // What makes the folder whole comes last.
         let path = self.out.join(WEAR);
         let text = serde_json::to_string_pretty(&concluded.results);
         let text = text.map_err(|error| Error::file(&path, error))?;
-        WholeFile::write(&path, text.as_bytes())?;
+        WholeFile::write(&path, &text)?;
         if concluded.results.complete {
             earlier::remove_checkpoint(&self.out)?;
         }

@@ -6,6 +6,9 @@ use std::fmt;
 /// A line for each joint, and how far the model explains the recordings.
 impl fmt::Display for Results {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if !self.complete {
+            writeln!(f, "stopped; the best so far:")?;
+        }
         for (path, joint) in self.joints.iter() {
             writeln!(
                 f,
@@ -55,6 +58,9 @@ impl fmt::Display for Results {
                 f,
                 "the motion does not repeat itself: the intervals include its scatter"
             ),
+            (Interval::None, _) if !self.complete => {
+                writeln!(f, "no interval: the search was stopped before its end")
+            }
             (Interval::None, _) => {
                 writeln!(f, "no interval: the model does not explain the recordings")
             }

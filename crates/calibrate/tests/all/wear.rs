@@ -132,6 +132,9 @@ fn an_estimation_that_is_stopped_says_so_and_has_no_interval() {
     let results = estimate(&recorded, &[0.0], 1.5, &mut Steps(4)).unwrap();
     assert!(!results.complete);
     assert_eq!(results.interval, Interval::None);
+    let words = results.to_string();
+    assert!(words.starts_with("stopped; the best so far:"), "{words}");
+    assert!(!words.contains("does not explain"), "{words}");
     // Of the small end, ideal in the best machine so far, nothing is known either.
     for (_, joint) in results.joints.iter() {
         assert_eq!((joint.verdict, joint.low_m), (Verdict::Unclear, None));

@@ -239,6 +239,10 @@ fn the_ending_says_what_is_written() {
     for (out, expected) in [
         (".", "--out: . is a folder, expected a file"),
         (
+            "f.parquet/",
+            "--out: f.parquet/ is a folder, expected a file",
+        ),
+        (
             "x.xlsx",
             "--out: found x.xlsx, expected a name that ends in .parquet or .csv",
         ),

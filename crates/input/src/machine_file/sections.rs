@@ -62,6 +62,19 @@ impl Crank {
         if main.clear().is_some() && self.mass.is_none() {
             return Err(Error::missing("mass").against("/joints.main.clearance"));
         }
+        if let (Some(mass), DriveChoice::Free(motor)) = (self.mass, &self.drive) {
+            let words = format!(
+                "{FARTHEST_FLYWHEEL} times the crank radius, {}",
+                self.radius
+            );
+            check_inertia(
+                motor.inertia,
+                mass,
+                FARTHEST_FLYWHEEL * self.radius.si(),
+                &words,
+            )
+            .map_err(|error| error.under("drive.free").against("mass").against("radius"))?;
+        }
         Ok(mechanism::Crankshaft {
             mass: self.mass.map_or(0.0, |m| m.si()),
             inertia: match &self.drive {
@@ -92,7 +105,7 @@ impl Crank {
 #[serde(deny_unknown_fields)]
 pub(super) struct Rod {
     /// Distance between the centres of the two eyes.
-    length: Positive<Length>,
+    pub length: Positive<Length>,
     /// Mass.
     mass: Positive<Mass>,
     /// Distance from the big-end eye to the centre of mass.
@@ -100,6 +113,39 @@ pub(super) struct Rod {
     /// Moment of inertia about the centre of mass.
     inertia: Positive<Inertia>,
 }
+
+/// That `inertia` is not larger than that of the body's mass at `farthest` from the axis, which `words` say: larger ones are a
+/// slip of the unit.
+fn check_inertia(
+    inertia: Positive<Inertia>,
+    mass: Positive<Mass>,
+    farthest: f64,
+    words: &str,
+) -> Result<(), Error> {
+    let largest = mass.si() * farthest * farthest;
+    if inertia.si() <= largest {
+        return Ok(());
+    }
+    let gyration = (inertia.si() / mass.si()).sqrt();
+    let expected = format_args!(
+        "a moment of inertia up to {} kg m^2: the radius of gyration of {mass} would be {} m, more than {words}; check its unit",
+        three_digits(largest),
+        three_digits(gyration)
+    );
+    Err(Error::clash("inertia", expected))
+}
+
+/// A number with three digits, as messages show it.
+fn three_digits(x: f64) -> f64 {
+    format!("{x:.2e}").parse().unwrap_or(x)
+}
+
+/// The farthest that mass of a crosshead's body is from its pin, as a multiple of the rod's length: beyond a piston at the far end
+/// of a long piston rod.
+const FARTHEST_PISTON: f64 = 5.0;
+
+/// The farthest that mass of flywheel or rotor is from the shaft, as a multiple of the crank radius.
+const FARTHEST_FLYWHEEL: f64 = 50.0;
 
 /// The largest polytropic exponent. That of an ideal gas without loss of heat is at most 5/3, of a monatomic one; losses
 /// make it smaller, leakage somewhat larger.
@@ -118,6 +164,9 @@ impl Rod {
             let expected = format_args!("a length up to that of the rod, {length}");
             return Err(Error::clash("centre_of_mass", expected).against("length"));
         }
+        let words = format!("the rod's length, {length}");
+        check_inertia(self.inertia, self.mass, length.si(), &words)
+            .map_err(|error| error.against("mass").against("length"))?;
         Ok(mechanism::Rod {
             length: length.si(),
             mass: self.mass.si(),
@@ -140,7 +189,23 @@ pub(super) struct Crosshead {
 }
 
 impl Crosshead {
-    pub(super) fn resolve(&self, guide: &Guide) -> Result<mechanism::Crosshead, Error> {
+    /// The crosshead in `guide` on a rod of length `rod`.
+    pub(super) fn resolve(
+        &self,
+        guide: &Guide,
+        rod: Positive<Length>,
+    ) -> Result<mechanism::Crosshead, Error> {
+        if let Some(inertia) = self.inertia {
+            let words = format!("{FARTHEST_PISTON} times the rod's length, {rod}");
+            check_inertia(inertia, self.mass, FARTHEST_PISTON * rod.si(), &words).map_err(
+                |error| {
+                    error
+                        .against("mass")
+                        .against("/rod.length")
+                        .against("/throws.*.rod.length")
+                },
+            )?;
+        }
         if guide.clear().is_some() && self.inertia.is_none() {
             let error = Error::missing("inertia").against("/joints.guide.clearance");
             return Err(error.against("/throws.*.joints.guide.clearance"));

@@ -166,6 +166,21 @@ pub(crate) fn canonical(key: &str) -> String {
     join(place, &rest)
 }
 
+/// The synonym that `section` has for its key `key` of a machine file, with its place; `key` itself where it has none. What
+/// throws share stands at the top.
+pub(crate) fn as_written(section: &Value, key: &str) -> String {
+    let throw = key
+        .strip_prefix("throws.")
+        .and_then(|rest| rest.split_once('.'));
+    let rest = throw.map_or(key, |(_, rest)| rest);
+    let place = key[..key.len() - rest.len()].trim_end_matches('.');
+    let meant = |s: &&Synonym| key_at(s, throw.is_some()) == rest;
+    let names = SYNONYMS.iter().filter(meant);
+    let mut places = names.flat_map(|s| [join(place, s.name), s.name.to_owned()]);
+    let written = places.find(|name| find(section, name).is_some());
+    written.unwrap_or_else(|| key.to_owned())
+}
+
 /// Puts the keys of a machine file in the place of their synonyms.
 pub(super) fn replace(written: &mut Written, mistakes: &mut Mistakes) {
     for place in places(&written.tree) {

@@ -213,7 +213,7 @@ impl ThrowSection {
         let big_end = joints::bearing(&joints.big_end).map_err(under("joints.big_end"))?;
         let small_end = joints::bearing(&joints.small_end).map_err(under("joints.small_end"))?;
         let guide = joints::guide(&joints.guide).map_err(under("joints.guide"))?;
-        let crosshead = self.crosshead.resolve(&guide.joint);
+        let crosshead = self.crosshead.resolve(&guide.joint, self.rod.length);
         let throw = Throw {
             crank_radius: crank.si(),
             pin_angle: self.crank_pin_angle.map_or(0.0, |angle| angle.si()),

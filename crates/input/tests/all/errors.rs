@@ -167,6 +167,12 @@ messages! {
         "m.yaml:5:11: rod.length: found '60 mm', expected a length above the crank radius, 0.12 m";
     centre_of_mass_outside_the_rod: "centre_of_mass: 220 mm" => "centre_of_mass: 620 mm",
         "m.yaml:7:19: rod.centre_of_mass: found '620 mm', expected a length up to that of the rod, 0.6 m";
+    inertia_beyond_the_rod: "inertia: 0.6 kg m^2" => "inertia: 600 kg m^2",
+        "m.yaml:8:12: rod.inertia: found '600 kg m^2', expected a moment of inertia up to 4.32 kg m^2: the radius of gyration of 12 kg would be 7.07 m, more than the rod's length, 0.6 m; check its unit";
+    inertia_beyond_the_piston: "crosshead: {mass: 18 kg}" => "crosshead: {mass: 18 kg, inertia: 684 kg m^2}",
+        "m.yaml:9:35: crosshead.inertia: found '684 kg m^2', expected a moment of inertia up to 162 kg m^2: the radius of gyration of 18 kg would be 6.16 m, more than 5 times the rod's length, 0.6 m; check its unit";
+    inertia_beyond_a_flywheel: "crank: {radius: 120 mm}" => "crank: {radius: 120 mm, mass: 70 kg, drive: {free: {inertia: 34000 kg m^2, mean_torque: 100 N m, slope: 500 N m s}}}",
+        "m.yaml:3:62: crank.drive.free.inertia: found '34000 kg m^2', expected a moment of inertia up to 2520 kg m^2: the radius of gyration of 70 kg would be 22 m, more than 50 times the crank radius, 0.12 m; check its unit";
     discharge_below_suction: "discharge: 0.393 MPa" => "discharge: 0.093 MPa",
         "m.yaml:13:14: cylinder.discharge: found '0.093 MPa', expected a pressure of at least suction, 105000 Pa";
     clearance_wider_than_the_journal: "clearance: 0.1 mm" => "clearance: 51 mm",
@@ -227,8 +233,11 @@ fn what_a_guess_clashes_with_is_no_mistake() {
     let text = MACHINE
         .replace("radius: 120 mm", "radius: 120")
         .replace("length: 600 mm", "length: 10 mm");
-    // The centre of mass outside of the rod is one, as both values are written.
-    assert_eq!(keys(&text), ["crank.radius", "rod.centre_of_mass"]);
+    // A centre of mass outside of the rod and an inertia too large for it are some, as all these values are written.
+    assert_eq!(
+        keys(&text),
+        ["crank.radius", "rod.centre_of_mass", "rod.inertia"]
+    );
 }
 
 /// Two throws that share a rod.

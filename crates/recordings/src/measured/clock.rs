@@ -1,6 +1,7 @@
 //! A column of time: the sample rate that follows from it, and where samples are missing.
 
-use super::stated::{StatedRate, agree};
+use super::names::TimeUnit;
+use super::stated::{CLEAR_FROM_HZ, StatedRate, agree};
 use crate::Error;
 use std::path::Path;
 
@@ -11,7 +12,7 @@ const REGULAR: f64 = 0.9;
 #[derive(Clone, Debug)]
 pub(crate) struct TimeColumn {
     pub(crate) name: String,
-    pub(crate) seconds_per_unit: f64,
+    pub(crate) unit: TimeUnit,
     /// Whether the file has it in single precision: its steps then grow uneven with time.
     pub(crate) single_precision: bool,
 }
@@ -20,6 +21,7 @@ pub(crate) struct TimeColumn {
 #[derive(Debug)]
 pub(crate) struct Clock {
     column: TimeColumn,
+    seconds_per_unit: f64,
     step_s: f64,
     /// To what the times are rounded where that is more than a step, s; 0 elsewhere.
     rounding_s: f64,
@@ -42,13 +44,25 @@ impl Clock {
         if let Some(sample) = times.iter().position(|t| !t.is_finite()) {
             return refuse(format!("{} has no time", place(sample as u64)));
         }
-        let scale = column.seconds_per_unit;
-        let steps: Vec<f64> = times.windows(2).map(|t| (t[1] - t[0]) * scale).collect();
+        let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
+        let scale = match seconds_per_unit(&column, median(&steps), stated_hz) {
+            Ok(scale) => scale,
+            Err(reason) => return refuse(reason),
+        };
+        let steps: Vec<f64> = steps.iter().map(|step| step * scale).collect();
+        let of_step = |column, step_s, rounding_s| Self {
+            column,
+            seconds_per_unit: scale,
+            step_s,
+            rounding_s,
+            last_s: None,
+            sample: 0,
+        };
         let found = match (median(&steps), stated_hz) {
             (None, Some(stated)) => 1.0 / stated,
             (None, None) => return refuse("one sample determines no rate".into()),
             (Some(median), _) => {
-                let slack = resolution(&column, times[times.len() - 1]);
+                let slack = resolution(&column, times[times.len() - 1] * scale);
                 let alike = |step: &&f64| (*step - median).abs() <= 0.5 * median + slack;
                 let alike: Vec<f64> = steps.iter().filter(alike).copied().collect();
                 if median <= 0.0 || (alike.len() as f64) < REGULAR * steps.len() as f64 {
@@ -60,7 +74,7 @@ impl Clock {
                                 rounding_s.unwrap_or_default()
                             ));
                         };
-                        return Ok(Self::of_step(
+                        return Ok(of_step(
                             column,
                             1.0 / stated,
                             rounding_s.unwrap_or_default(),
@@ -70,12 +84,10 @@ impl Clock {
                         let of_pair = (times[at] * scale, times[at + 1] * scale);
                         let back = not_ahead(&place(at as u64 + 1), of_pair);
                         let backwards = median < 0.0;
-                        let what = if backwards {
-                            "the times run backwards"
-                        } else {
-                            "the times are not evenly spaced"
-                        };
-                        return refuse(format!("{what}: {back}"));
+                        return refuse(match backwards {
+                            true => format!("the times run backwards: {back}"),
+                            false => format!("the times are not evenly spaced: {back}{DOUBT}"),
+                        });
                     }
                     let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
                     let most = steps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -91,7 +103,7 @@ impl Clock {
             return refuse(format!("the times are steps of {found:e} s"));
         }
         let Some(stated) = stated else {
-            return Ok(Self::of_step(column, 1.0 / found_hz, 0.0));
+            return Ok(of_step(column, 1.0 / found_hz, 0.0));
         };
         if !agree(stated.hz, found_hz) {
             let says = match &stated.heading {
@@ -109,21 +121,16 @@ impl Clock {
             None => stated.hz,
             Some(_) => found_hz,
         };
-        Ok(Self::of_step(column, 1.0 / hz, 0.0))
-    }
-
-    fn of_step(column: TimeColumn, step_s: f64, rounding_s: f64) -> Self {
-        Self {
-            column,
-            step_s,
-            rounding_s,
-            last_s: None,
-            sample: 0,
-        }
+        Ok(of_step(column, 1.0 / hz, 0.0))
     }
 
     pub(crate) fn sample_rate_hz(&self) -> f64 {
         1.0 / self.step_s
+    }
+
+    /// A time of the column in seconds.
+    pub(crate) fn seconds(&self, time: f64) -> f64 {
+        time * self.seconds_per_unit
     }
 
     /// Goes on to the next sample: the time that is missing before it, if samples are.
@@ -133,7 +140,7 @@ impl Clock {
         time: f64,
         place: &dyn Fn(u64) -> String,
     ) -> Result<Option<f64>, Error> {
-        let time_s = time * self.column.seconds_per_unit;
+        let time_s = self.seconds(time);
         let sample = self.sample;
         if !time_s.is_finite() {
             let reason = format!("{} has no time", place(sample));
@@ -143,18 +150,57 @@ impl Clock {
         let Some(last_s) = self.last_s.replace(time_s) else {
             return Ok(None);
         };
-        let slack = 0.5 * self.step_s + self.rounding_s + resolution(&self.column, time);
+        let slack = 0.5 * self.step_s + self.rounding_s + resolution(&self.column, time_s);
         let excess = time_s - last_s - self.step_s;
         if excess < -slack {
             return Err(Error::time(
                 path,
                 &self.column.name,
-                not_ahead(&place(sample), (last_s, time_s)),
+                not_ahead(&place(sample), (last_s, time_s)) + DOUBT,
             ));
         }
         Ok((excess > slack).then_some(excess))
     }
 }
+
+/// Units that a column of time may have where its heading states none, with their seconds.
+const UNITS: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6)];
+
+/// The seconds of a column's unit. Where the heading states none, it is the one with which the times have about the stated rate.
+/// Without a stated rate it is the second, if times in it have a rate of at least [`CLEAR_FROM_HZ`].
+fn seconds_per_unit(
+    column: &TimeColumn,
+    step: Option<f64>,
+    stated_hz: Option<f64>,
+) -> Result<f64, String> {
+    let step = match (column.unit, step) {
+        (TimeUnit::Seconds(seconds), _) => return Ok(seconds),
+        (TimeUnit::Unstated, Some(step)) if step > 0.0 => step,
+        (TimeUnit::Unstated, _) => return Ok(1.0),
+    };
+    let rate_hz = |seconds: f64| 1.0 / (step * seconds);
+    if let Some(stated_hz) = stated_hz {
+        let is_near = |seconds: &f64| (0.7..1.4).contains(&(rate_hz(*seconds) / stated_hz));
+        let mut units = UNITS.into_iter().map(|(_, seconds)| seconds);
+        return Ok(units.find(is_near).unwrap_or(1.0));
+    }
+    let in_seconds_hz = rate_hz(1.0);
+    if in_seconds_hz >= CLEAR_FROM_HZ || agree(in_seconds_hz, CLEAR_FROM_HZ) {
+        return Ok(1.0);
+    }
+    let shown = |hz: f64| (hz * 1e3).round() / 1e3;
+    let rates =
+        UNITS.map(|(unit, seconds)| format!("{} Hz if it is {unit}", shown(rate_hz(seconds))));
+    Err(format!(
+        "its heading has no unit: the sample rate would be {}; write the unit into the heading, such as `{} [ms]`, or state the \
+         sample rate",
+        rates.join(", "),
+        column.name
+    ))
+}
+
+/// What a time that is not ahead of the one before says of its file.
+const DOUBT: &str = ": a time is wrong, or the file is damaged";
 
 /// That the later of two times, s, is not ahead of the earlier one.
 fn not_ahead(place: &str, (before_s, time_s): (f64, f64)) -> String {
@@ -184,9 +230,9 @@ fn are_even(steps: &[f64], rate_hz: Option<f64>, rounding_s: f64) -> bool {
 }
 
 /// The rounding of a time that was stored in single precision, s.
-fn resolution(column: &TimeColumn, time: f64) -> f64 {
+fn resolution(column: &TimeColumn, time_s: f64) -> f64 {
     if column.single_precision {
-        f64::from(f32::EPSILON) * time.abs() * column.seconds_per_unit
+        f64::from(f32::EPSILON) * time_s.abs()
     } else {
         0.0
     }
@@ -219,7 +265,7 @@ mod tests {
     fn clock(times: &[f64], stated: Option<f64>) -> Result<Clock, Error> {
         let column = TimeColumn {
             name: "t".into(),
-            seconds_per_unit: 1.0,
+            unit: TimeUnit::Seconds(1.0),
             single_precision: false,
         };
         let stated = stated.map(StatedRate::number);
@@ -248,7 +294,7 @@ mod tests {
             .collect();
         let column = TimeColumn {
             name: "t".into(),
-            seconds_per_unit: 1.0,
+            unit: TimeUnit::Seconds(1.0),
             single_precision: true,
         };
         let mut clock = Clock::new(Path::new("a"), column, &single[..4096], None, &sample).unwrap();
@@ -270,7 +316,7 @@ mod tests {
         let message = clock.tick(path, 0.4, &sample).unwrap_err().to_string();
         assert_eq!(
             message,
-            "`a`, column `t`: sample 3 is at 0.4 s, the one before at 0.5022 s"
+            "`a`, column `t`: sample 3 is at 0.4 s, the one before at 0.5022 s: a time is wrong, or the file is damaged"
         );
         assert!(clock.tick(path, f64::NAN, &sample).is_err());
     }

@@ -25,10 +25,10 @@ pub use names::stem;
 pub use windows::{Length, Window, Windows};
 
 pub(crate) use clock::TimeColumn;
-pub(crate) use names::{is_unit, name_and_unit, seconds_of_unit, seconds_per_unit};
+pub(crate) use names::{TimeUnit, is_unit, name_and_unit, seconds_of_unit, time_unit};
 pub(crate) use stated::{
-    PERIODS, RATES, StatedRate, agree, is_sample_rate, is_speed, only_rate, speed_label,
-    unclear_number,
+    CLEAR_FROM_HZ, PERIODS, RATES, StatedRate, agree, is_sample_rate, is_speed, only_rate,
+    speed_label, unclear_number,
 };
 
 use crate::{Column, Error, Value};
@@ -223,10 +223,10 @@ impl Recording {
             if recording.times.is_empty() {
                 return Err(Error::damaged("a recording", path, "it has no samples"));
             }
-            let first = recording.times[0] * time.seconds_per_unit;
-            recording.start_s = Some(recording.samples.origin_s() + first);
             let place = |sample| place(&*recording.samples, sample);
             let clock = Clock::new(path, time, &recording.times, stated.as_ref(), &place)?;
+            let start_s = clock.seconds(recording.times[0]);
+            recording.start_s = Some(recording.samples.origin_s() + start_s);
             recording.sample_rate_hz = Some(clock.sample_rate_hz());
             recording.clock = Some(clock);
         }

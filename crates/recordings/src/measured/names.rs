@@ -105,16 +105,25 @@ const TIMES: [&str; 9] = [
     "tid",
 ];
 
-/// Seconds per unit of a column of time (`t`, `t_s`, `time`, `Time [ms]`, `Zeit [s]`, `Time ms`, `t/ms`); none for other
-/// columns.
-pub(crate) fn seconds_per_unit(name: &str, unit: Option<&str>) -> Option<f64> {
+/// What the heading of a column of time says of its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum TimeUnit {
+    /// That it is so many seconds.
+    Seconds(f64),
+    /// Nothing.
+    Unstated,
+}
+
+/// The unit of a column of time (`t`, `t_s`, `time`, `Time [ms]`, `Zeit [s]`, `Time ms`, `t/ms`); none for other columns.
+pub(crate) fn time_unit(name: &str, unit: Option<&str>) -> Option<TimeUnit> {
+    let seconds = |unit| seconds_of_unit(unit).map(TimeUnit::Seconds);
     let is_time = |name: &str| TIMES.contains(&name.to_lowercase().as_str());
     if is_time(stem(name)) {
-        return seconds_of_unit(unit.unwrap_or("s"));
+        return unit.map_or(Some(TimeUnit::Unstated), seconds);
     }
     let (before, after) = name.rsplit_once(['/', ' ', '_'])?;
     let is_alone = unit.is_none() && is_time(before.trim_end_matches([' ', ',', '/']));
-    is_alone.then(|| seconds_of_unit(after)).flatten()
+    is_alone.then(|| seconds(after)).flatten()
 }
 
 /// Seconds in a unit of time; none for other units. Capitals do not count in words.
@@ -215,7 +224,6 @@ mod tests {
     #[test]
     fn time_is_recognised() {
         for (heading, seconds) in [
-            ("t", Some(1.0)),
             ("t_s", Some(1.0)),
             ("Time [ms]", Some(1e-3)),
             ("time_us", Some(1e-6)),
@@ -231,16 +239,16 @@ mod tests {
             ("Time ms", Some(1e-3)),
             ("t/ms", Some(1e-3)),
             ("Time, s", Some(1.0)),
-            ("elapsed time", Some(1.0)),
+            ("elapsed time [s]", Some(1.0)),
             ("Time [mS]", None),
             ("lag time V", None),
         ] {
             let (name, unit) = name_and_unit(heading);
-            assert_eq!(
-                seconds_per_unit(&name, unit.as_deref()),
-                seconds,
-                "{heading}"
-            );
+            let expected = seconds.map(TimeUnit::Seconds);
+            assert_eq!(time_unit(&name, unit.as_deref()), expected, "{heading}");
+        }
+        for heading in ["t", "Time", "elapsed time"] {
+            assert_eq!(time_unit(heading, None), Some(TimeUnit::Unstated));
         }
     }
 }

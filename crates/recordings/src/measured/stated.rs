@@ -91,8 +91,8 @@ pub(crate) fn only_rate(named: &[(&str, f64)]) -> Result<Option<f64>, String> {
     }
 }
 
-/// Below this rate, Hz, a number with a fraction and without a unit may be in kHz.
-const CLEAR_FROM_HZ: f64 = 1000.0;
+/// Below this rate, Hz, what has no unit may be in another one: a number with a fraction in kHz, a time in milliseconds.
+pub(crate) const CLEAR_FROM_HZ: f64 = 1000.0;
 
 /// Why a number of this name and without a unit is no rate in Hz for certain; none where it is.
 pub(crate) fn unclear_number(name: &str, hz: f64) -> Option<String> {

@@ -39,11 +39,11 @@ pub(super) fn warnings(page: &CalibrationPage) -> Vec<String> {
     let fitted = page.fitted().after;
     if !page.results.complete {
         warnings.push(
-            "The search was stopped before its end. The values are the best so far, and the intervals are those around them."
+            "The search was stopped before its end. The values are the best so far, and the intervals are those around them. \
+             The same command with --resume continues from there."
                 .to_owned(),
         );
-    }
-    if !page.results.model_is_adequate && !page.runs.is_empty() {
+    } else if !page.results.model_is_adequate && !page.runs.is_empty() {
         warnings.push(
             "The model is wrong: it does not explain the recordings, so no interval is known for any parameter. Do not rely \
              on the values below. There are three possible reasons: the model lacks an effect, a value of the data sheet is \
@@ -234,9 +234,12 @@ mod tests {
         assert!(verdict(&page([204.3, 203.9], None)).contains("not fit the recordings better"));
         let narrow = page([14.0, 1.0], Some([14.0, 9.0]));
         assert!(warnings(&narrow)[0].contains("held-out runs are predicted"));
-        let mut stopped = good;
-        stopped.results.complete = false;
-        assert!(warnings(&stopped)[0].contains("stopped"));
+        // A search that was stopped says nothing about the model.
+        for mut stopped in [good, poor] {
+            stopped.results.complete = false;
+            let warnings = warnings(&stopped);
+            assert!(warnings[0].contains("stopped") && warnings.len() == 1);
+        }
     }
 
     #[test]

@@ -69,20 +69,22 @@ fn chamber(chamber: &ChamberSummary) -> String {
 }
 
 fn rod_load(load: &RodLoadSummary) -> String {
-    let force = |newtons: f64| match newtons > 0.0 {
-        true => format!("{} in tension", text::prefixed(newtons, "N")),
-        false => format!("{} in compression", text::prefixed(-newtons, "N")),
-    };
     let verdict = match load.reverses {
         true => "as API 618 asks for",
         false => "less than API 618 asks for",
     };
+    let side = |newtons: f64, angle_deg: f64| {
+        format!(
+            "up to {} over {angle_deg:.1}°",
+            text::prefixed(newtons.max(0.0), "N")
+        )
+    };
     format!(
-        "  {}rod load: from {} to {}\n    reversed for {:.1}° of crank angle, peak {:.1} % of the other: {verdict} \
-         ({:.0}°, {:.0} %)\n",
+        "  {}rod load: tension {}, compression {}\n    the shorter lasts {:.1}° of crank angle, the smaller is {:.1} % of the \
+         larger: {verdict} ({:.0}°, {:.0} %)\n",
         of_throw(&load.throw),
-        force(load.min_n),
-        force(load.max_n),
+        side(load.max_n, load.tension_angle_deg),
+        side(-load.min_n, load.compression_angle_deg),
         load.reversal_angle_deg,
         100.0 * load.reversed_share,
         load.least_reversal_angle_deg,

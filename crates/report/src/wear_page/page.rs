@@ -75,8 +75,11 @@ fn warnings(results: &Results) -> Vec<String> {
     let mut warnings = Vec::new();
     let misfit = size(results.fit.estimated);
     if !results.complete {
-        warnings
-            .push("The search was stopped before its end: these are its best values.".to_owned());
+        warnings.push(
+            "The search was stopped before its end: these are its best values. The same command with --resume continues from \
+             there."
+                .to_owned(),
+        );
     }
     match (results.interval, results.timing_rad) {
         (Interval::Discrepancy, Some(timing)) => warnings.push(format!(

@@ -123,11 +123,11 @@ fn reversals_have_their_closed_form() {
         let gas = (angle.to_radians() / 2.0).cos();
         for load in [constant_and_cosine(gas), constant_and_cosine(-gas)] {
             let reversal = load.reversal();
-            let error = reversal.angle.to_degrees() - angle;
+            let error = reversal.angle().to_degrees() - angle;
             assert!(error.abs() < 1e-3, "{angle}: {error}");
             let share = (1.0 - gas) / (1.0 + gas);
-            assert!((reversal.share - share).abs() < 1e-6);
-            let long = reversal.angle >= SHORTEST_REVERSAL;
+            assert!((reversal.share() - share).abs() < 1e-6);
+            let long = reversal.angle() >= SHORTEST_REVERSAL;
             // At 15° the peak of the reversed load is 0.4 % of the other.
             assert_eq!(reversal.is_sufficient(), long && share >= 0.03);
             assert_eq!(load.zeros().len(), 2);
@@ -140,7 +140,9 @@ fn reversals_have_their_closed_form() {
 fn a_load_of_one_direction_does_not_reverse() {
     for gas in [2.0, -2.0] {
         let reversal = constant_and_cosine(gas).reversal();
-        assert_eq!((reversal.angle, reversal.share), (0.0, 0.0));
+        assert_eq!((reversal.angle(), reversal.share()), (0.0, 0.0));
+        let sides = [reversal.tension.angle, reversal.compression.angle];
+        assert_eq!(sides[usize::from(gas < 0.0)], TAU);
         assert!(!reversal.is_sufficient());
     }
 }
@@ -153,8 +155,23 @@ fn of_several_reversals_the_longest_counts() {
         _ => -2.0,
     };
     let load = RodLoad::new((0..360).map(degree).collect(), vec![0.0; 360]);
-    let angle = load.reversal().angle.to_degrees();
+    let angle = load.reversal().angle().to_degrees();
     // Straight lines from −2 to 1 and back add a third of a degree at each end, less what they take.
     assert!((angle - (19.0 + 2.0 / 3.0)).abs() < 1e-9, "{angle}");
-    assert!((load.reversal().share - 0.5).abs() < 1e-12);
+    assert!((load.reversal().share() - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn the_longer_direction_may_have_the_larger_peak() {
+    // Tension of 2 over 200°, compression of 1 over 160°: angle and share are of the two sides that they stand with.
+    let load = |j: i32| if j < 200 { 2.0 } else { -1.0 };
+    let load = RodLoad::new((0..360).map(load).collect(), vec![0.0; 360]);
+    let reversal = load.reversal();
+    assert_eq!(
+        [reversal.tension.peak, reversal.compression.peak],
+        [2.0, 1.0]
+    );
+    let angles = [reversal.tension.angle, reversal.compression.angle].map(f64::to_degrees);
+    assert!((angles[0] - 200.0).abs() < 1.0 && (angles[1] - 160.0).abs() < 1.0);
+    assert_eq!(reversal.angle(), reversal.compression.angle);
 }

@@ -31,8 +31,9 @@ pub(super) fn texts(line: &[u8], separator: u8) -> Vec<String> {
     cells(line, separator).map(text).collect()
 }
 
-/// The number in a cell, NaN in an empty one; none where something else stands there.
-pub(super) fn number(cell: &[u8], separator: u8) -> Option<f64> {
+/// The number in a cell, NaN in an empty one; none where something else stands there. A comma in a cell separates nothing: it
+/// stands there in quotation marks, or another sign separates the cells. It is then the decimal sign.
+pub(super) fn number(cell: &[u8]) -> Option<f64> {
     if cell.is_empty() {
         return Some(f64::NAN);
     }
@@ -40,10 +41,10 @@ pub(super) fn number(cell: &[u8], separator: u8) -> Option<f64> {
     if let Ok(number) = text.parse() {
         return Some(number);
     }
-    if separator != b',' && text.contains(',') && !text.contains('.') {
-        return text.replacen(',', ".", 1).parse().ok();
+    match text.contains(',') && !text.contains('.') {
+        true => text.replacen(',', ".", 1).parse().ok(),
+        false => None,
     }
-    None
 }
 
 /// What loggers and spreadsheets write for a sample that is missing, in small letters.

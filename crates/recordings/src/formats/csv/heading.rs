@@ -3,6 +3,7 @@
 
 use super::cells::{number, separator, texts};
 use super::date::{day, nanoseconds};
+use super::labview;
 use super::lines::Lines;
 use super::stated_rate::StatedLines;
 use crate::Error;
@@ -22,6 +23,8 @@ pub(super) struct Heading {
     pub sample_rate: Option<StatedRate>,
     /// What stands there about a sample rate and is not understood.
     pub unclear_rate: Option<String>,
+    /// Whether it is a LabVIEW measurement file.
+    pub is_labview: bool,
 }
 
 /// Where the names stand, and the first row.
@@ -39,20 +42,21 @@ impl Heading {
     /// # Errors
     /// A file that cannot be read or has no rows.
     pub fn read(path: &Path, skipped: u64) -> Result<Self, Error> {
-        let found = find(path, skipped)?;
         let mut lines = after(path, skipped)?;
         let damaged = |reason| Err(Error::damaged("CSV", path, reason));
         if !lines.advance_to_text()? {
             return damaged("it has no lines of numbers");
         }
+        if labview::is_one(&lines.line) {
+            return labview::heading(lines);
+        }
+        let found = find(path, skipped)?;
         if let Some(found) = &found {
             while lines.number < found.names && lines.advance()? {}
         }
         let separator = separator(&lines.line);
         let first = texts(&lines.line, separator);
-        let is_number = |cell: &String| {
-            !cell.is_empty() && number(cell.as_bytes(), separator).is_some()
-        };
+        let is_number = |cell: &String| !cell.is_empty() && number(cell.as_bytes()).is_some();
         if first.iter().all(is_number) {
             return Ok(Self {
                 lines,
@@ -60,6 +64,7 @@ impl Heading {
                 names: (1..=first.len()).map(|i| format!("column_{i}")).collect(),
                 sample_rate: None,
                 unclear_rate: None,
+                is_labview: false,
             });
         }
         let mut names = first;
@@ -85,6 +90,7 @@ impl Heading {
             names,
             sample_rate,
             unclear_rate,
+            is_labview: false,
         })
     }
 }
@@ -110,14 +116,12 @@ fn find(path: &Path, skipped: u64) -> Result<Option<Found>, Error> {
         }
         let separator = separator(&lines.line);
         let cells = texts(&lines.line, separator);
-        let is_number = |cell: &&String| {
-            !cell.is_empty() && number(cell.as_bytes(), separator).is_some()
-        };
-        let has_numbers = cells.iter().any(|cell| is_number(&cell));
+        let is_number = |cell: &String| !cell.is_empty() && number(cell.as_bytes()).is_some();
+        let has_numbers = cells.iter().any(is_number);
         // What a logger says of itself begins with a word.
         let begins = cells.first().is_some_and(|cell| {
             let dated = |cell: &[u8]| nanoseconds(cell).or_else(|| day(cell)).is_some();
-            cell.is_empty() || is_number(&cell) || dated(cell.as_bytes())
+            cell.is_empty() || is_number(cell) || dated(cell.as_bytes())
         });
         if let Some((names, last)) = &before[1]
             && has_numbers

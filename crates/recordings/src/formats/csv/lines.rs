@@ -1,4 +1,4 @@
-//! The lines of a text file, one at a time.
+//! The lines of a text file, one at a time. They end in LF, CR LF, or CR alone where the file begins so.
 
 use super::encoding::{self, Text};
 use crate::Error;
@@ -12,6 +12,8 @@ const LONGEST_LINE: u64 = 1 << 20;
 pub(super) struct Lines {
     pub path: PathBuf,
     text: Text,
+    /// The last byte of a line's end.
+    end: u8,
     /// Without its end.
     pub line: Vec<u8>,
     /// Number of the line, from 1.
@@ -20,9 +22,16 @@ pub(super) struct Lines {
 
 impl Lines {
     pub fn open(path: &Path) -> Result<Self, Error> {
+        let mut text = encoding::open(path)?;
+        let start = text.fill_buf().map_err(Error::io("read", path))?;
+        let end = match start.contains(&b'\r') && !start.contains(&b'\n') {
+            true => b'\r',
+            false => b'\n',
+        };
         Ok(Self {
             path: path.to_owned(),
-            text: encoding::open(path)?,
+            text,
+            end,
             line: Vec::new(),
             number: 0,
         })
@@ -33,17 +42,15 @@ impl Lines {
         self.line.clear();
         let read = (&mut self.text)
             .take(LONGEST_LINE)
-            .read_until(b'\n', &mut self.line);
+            .read_until(self.end, &mut self.line);
         let read = read.map_err(Error::io("read", &self.path))?;
         if read == 0 {
             return Ok(false);
         }
         self.number += 1;
-        if self.line.last() == Some(&b'\n') {
+        if self.line.last() == Some(&self.end) {
             self.line.pop();
-            if self.line.last() == Some(&b'\r') {
-                self.line.pop();
-            }
+            self.line.pop_if(|last| *last == b'\r');
         } else if read as u64 == LONGEST_LINE {
             let reason = format!("line {} is longer than {LONGEST_LINE} bytes", self.number);
             return Err(Error::damaged("CSV", &self.path, reason));

@@ -1,9 +1,10 @@
-//! CSV of plain columns, for spreadsheets and for a look with the naked eye (RFC 4180).
+//! CSV of plain columns, for spreadsheets and for a look with the naked eye (RFC 4180), and the text files of data loggers.
 
 mod cells;
 mod date;
 mod encoding;
 mod heading;
+mod labview;
 mod lines;
 mod read;
 mod stated_rate;
@@ -17,7 +18,7 @@ use super::recording_format::{RecordingFormat};
 /// CSV as a format of recordings.
 pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
     name: "CSV",
-    endings: &["csv", "tsv", "txt"],
+    endings: &["csv", "tsv", "txt", "lvm"],
     signature_at: None,
     recognise: |head| is_text(head).then_some("text"),
     open: read::open,

@@ -1,7 +1,8 @@
 //! Columns of numbers from CSV, a line at a time.
 //!
-//! - The columns are separated by commas, semicolons or tabs. Where commas do not separate, they may be the decimal
-//!   sign. A table whose numbers have both signs is refused, because one of them may set thousands apart.
+//! - The columns are separated by commas, semicolons or tabs. Where commas do not separate, or a number stands in quotation
+//!   marks, they may be the decimal sign. A table whose numbers have both signs is refused, because one of them may set
+//!   thousands apart.
 //! - The line before the first row has their names, with the unit in brackets or at the end (`acc [m/s^2]`, `acc_m_s2`), or in
 //!   a line of its own between. A file without names has the columns `column_1`, `column_2`, ... What a data logger writes
 //!   before is skipped but for the sample rate.
@@ -10,17 +11,20 @@
 //! - An empty cell is a missing sample, and so are `Overload`, `OVL`, `--`, `#N/A` and the like, and an empty line within a
 //!   single column.
 //! - Rows may end in a separator more than the heading, or less.
+//! - A LabVIEW measurement file has its own heading (`labview.rs`).
 //! - A column without a name (row numbers) is left out, and one that does not begin with a number. One whose heading has a unit
 //!   has to.
 
 use super::cells::{cells, is_missing, number};
 use super::date::{day, nanoseconds, time_of_day};
 use super::heading::Heading;
+use super::labview;
 use super::lines::Lines;
+use super::written_number::{Written, written_number};
 use crate::Error;
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, Samples, StatedRate, TimeColumn, is_unit,
-    name_and_unit, seconds_of_unit, seconds_per_unit, selected,
+    MeasuredChannel, MeasuredFile, Options, Recording, Samples, StatedRate, TimeColumn, TimeUnit, is_unit,
+    name_and_unit, seconds_of_unit, selected, time_unit,
 };
 use std::collections::VecDeque;
 use std::path::Path;
@@ -34,6 +38,7 @@ const MOST_JUMPS: usize = 1 << 16;
 struct CsvSamples {
     lines: Lines,
     separator: u8,
+    is_labview: bool,
     columns: usize,
     /// For each column where its numbers go.
     targets: Vec<Target>,
@@ -79,6 +84,7 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
         names,
         sample_rate,
         unclear_rate,
+        is_labview,
     } = Heading::read(path, options.skipped_lines)?;
     if names.len() > MOST_COLUMNS {
         return Err(damaged(path, format!("it has {} columns", names.len())));
@@ -87,7 +93,7 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     let row: Vec<&[u8]> = cells(&lines.line, separator).take(names.len()).collect();
     let numeric: Vec<bool> = row
         .iter()
-        .map(|cell| number(cell, separator).is_some())
+        .map(|cell| number(cell).is_some())
         .chain(std::iter::repeat(true))
         .take(names.len())
         .collect();
@@ -119,25 +125,26 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     let said = options.sample_rate_hz.map(StatedRate::number);
     let stated = said.or(sample_rate);
     let time = time.map(|(i, time)| {
-        let (target, seconds_per_unit) = match time {
-            Time::Number(seconds) => (Target::Time, seconds),
+        let (target, unit) = match time {
+            Time::Number(unit) => (Target::Time, unit),
             Time::Date => {
                 if let Some(day) = day_column(&row, i) {
                     targets[day] = Target::Day;
                 }
-                (Target::Date, 1.0)
+                (Target::Date, TimeUnit::Seconds(1.0))
             }
         };
         targets[i] = target;
         TimeColumn {
             name: names[i].clone(),
-            seconds_per_unit,
+            unit,
             single_precision: false,
         }
     });
     let samples = CsvSamples {
         lines,
         separator,
+        is_labview,
         columns: names.len(),
         targets,
         names,
@@ -163,8 +170,8 @@ fn damaged(path: &Path, reason: impl ToString) -> Error {
 /// What a column of time holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Time {
-    /// Numbers, in a unit of so many seconds.
-    Number(f64),
+    /// Numbers in a unit.
+    Number(TimeUnit),
     /// Dates or times of day.
     Date,
 }
@@ -178,13 +185,13 @@ fn time_column(
 ) -> Option<(usize, Time)> {
     let called = |i: usize| {
         let (name, unit) = &headings[i];
-        seconds_per_unit(name, unit.as_deref()).filter(|_| numeric[i])
+        time_unit(name, unit.as_deref()).filter(|_| numeric[i])
     };
     let named = (0..headings.len()).find_map(|i| Some((i, Time::Number(called(i)?))));
     let by_unit = || {
         let unit = headings.first()?.1.as_deref()?;
         let seconds = seconds_of_unit(unit).filter(|_| numeric[0])?;
-        Some((0, Time::Number(seconds)))
+        Some((0, Time::Number(TimeUnit::Seconds(seconds))))
     };
     let dated = || {
         let at = row.iter().position(|cell| nanoseconds(cell).is_some())?;
@@ -219,32 +226,37 @@ fn seconds(day: i64, cell: &[u8], start: &mut Option<i64>) -> Option<f64> {
     Some(at.checked_sub(start)? as f64 * 1e-9)
 }
 
-/// That all numbers have one decimal sign, where commas do not separate the cells. `place` is the line, the column and the
-/// separator.
+/// That all numbers have one decimal sign, and that the first of them shows which. Where commas separate the cells, one in
+/// quotation marks may set thousands apart. `place` is the line, the column and the separator.
 fn one_sign(
     first: &mut Option<Decimal>,
     cell: &[u8],
     place: (u64, usize, u8),
     names: &[String],
 ) -> Result<(), String> {
-    let (line, column, separator) = place;
-    let sign = cell.iter().copied().find(|byte| b".,".contains(byte));
-    let Some(sign) = sign.filter(|_| separator != b',') else {
+    let Some(sign) = cell.iter().copied().find(|byte| b".,".contains(byte)) else {
         return Ok(());
     };
+    let (line, column, separator) = place;
+    let number = || String::from_utf8_lossy(cell).into_owned();
+    let found = || format!("line {line}, column `{}`: found `{}`", names[column], number());
     match first {
         Some(first) if first.sign != sign => Err(format!(
-            "line {line}, column `{}`: found `{}`, but `{}` in line {}, column `{}`: one of `,` and `.` may set thousands \
-             apart; write all numbers with the same decimal sign and no sign between thousands",
-            names[column],
-            String::from_utf8_lossy(cell),
+            "{}, but `{}` in line {}, column `{}`: one of `,` and `.` may set thousands apart; write all numbers with the same \
+             decimal sign and no sign between thousands",
+            found(),
             first.number,
             first.line,
             names[first.column]
         )),
         Some(_) => Ok(()),
+        None if sign == separator && may_be_thousands(cell) => Err(format!(
+            "{}: its comma may be the decimal sign or set thousands apart; write numbers with a decimal point and no sign \
+             between thousands, or separate the columns with semicolons",
+            found()
+        )),
         None => {
-            let number = String::from_utf8_lossy(cell).into_owned();
+            let number = number();
             *first = Some(Decimal {
                 sign,
                 line,
@@ -254,6 +266,12 @@ fn one_sign(
             Ok(())
         }
     }
+}
+
+/// Whether the comma of a number may set thousands apart.
+fn may_be_thousands(cell: &[u8]) -> bool {
+    let written = std::str::from_utf8(cell).ok().and_then(|text| written_number(text, true));
+    matches!(written, Some((Written::Ambiguous { .. }, _)))
 }
 
 impl CsvSamples {
@@ -292,7 +310,7 @@ impl CsvSamples {
                 }),
                 Target::Date => seconds(self.day, cell, &mut self.start),
                 Target::Channel(_) if is_missing(cell) => Some(f64::NAN),
-                _ => number(cell, self.separator),
+                _ => number(cell),
             };
             let Some(number) = number else {
                 return Err(not_a(target, &self.lines, &self.names[found - 1], cell));
@@ -347,6 +365,11 @@ impl Samples for CsvSamples {
             if self.lines.is_blank() {
                 self.empty += u64::from(self.columns == 1 && self.lines.line.is_empty());
                 continue;
+            }
+            if self.is_labview && labview::begins_another(&self.lines.line) {
+                let line = self.lines.number;
+                let reason = format!("a further measurement begins in line {line}: save each to a file of its own");
+                return Err(damaged(&self.lines.path, reason));
             }
             if self.empty > 0 {
                 self.empty -= 1;

@@ -4,7 +4,7 @@
 //! not guessed at: it states no rate, and is quoted where no other one states it.
 
 use super::written_number::{Written, written_number};
-use crate::measured::{PERIODS, RATES, StatedRate, agree, seconds_of_unit};
+use crate::measured::{CLEAR_FROM_HZ, PERIODS, RATES, StatedRate, agree, seconds_of_unit};
 
 /// Rates in samples per second, in small letters and without a prefix.
 const PER_SECOND: [&str; 11] = [
@@ -20,9 +20,6 @@ const PER_SECOND: [&str; 11] = [
     "1/s",
     "s^-1",
 ];
-
-/// Without a unit a period is in seconds below this one, s; a longer one may be in milliseconds.
-const LONGEST_WITHOUT_UNIT_S: f64 = 0.01;
 
 /// Words that make another rate of one that is stated elsewhere.
 const DIVIDERS: [&str; 3] = ["divi", "decimat", "teiler"];
@@ -282,7 +279,7 @@ fn rate(text: &str, number: Written, unit: Option<Unit>, named: Named) -> Result
         (Some(Unit::Seconds(seconds)), _) => 1.0 / (number * seconds),
         (None, Named::Rate) if number.fract() != 0.0 => return without_unit(),
         (None, Named::Rate) => number,
-        (None, Named::Period) if number >= LONGEST_WITHOUT_UNIT_S => return without_unit(),
+        (None, Named::Period) if 1.0 / number < CLEAR_FROM_HZ => return without_unit(),
         (None, Named::Period) => 1.0 / number,
     };
     let rounded = (hz * 1e6).round() / 1e6;

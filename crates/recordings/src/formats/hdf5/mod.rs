@@ -17,8 +17,8 @@ mod samples;
 use super::guarded::guarded;
 use super::recording_format::{RecordingFormat, has};
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, TimeColumn, agree, is_sample_rate, is_speed,
-    name_and_unit, one_length, one_rate, only_rate, seconds_per_unit, selected, speed_label, unclear_number,
+    MeasuredChannel, MeasuredFile, Options, Recording, TimeColumn, TimeUnit, agree, is_sample_rate, is_speed,
+    name_and_unit, one_length, one_rate, only_rate, selected, speed_label, time_unit, unclear_number,
 };
 use crate::{Error, measured::expansion};
 use contents::{Array, Contents};
@@ -63,7 +63,7 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
         let name = all[i].name.rsplit('/').next().unwrap_or_default();
         // NetCDF has `seconds since 2026-01-01`.
         let unit = all[i].unit.as_deref();
-        seconds_per_unit(name, unit.and_then(|unit| unit.split(" since ").next()))
+        time_unit(name, unit.and_then(|unit| unit.split(" since ").next()))
     };
     let (times, rest): (Vec<usize>, Vec<usize>) =
         (0..all.len()).partition(|&i| unit_of_time(i).is_some());
@@ -80,7 +80,7 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     let time = nearest_time(times.iter().map(|&i| (i, places[i].0)), arrays[0], length);
     let column = time.map(|i| TimeColumn {
         name: all[i].name.clone(),
-        seconds_per_unit: unit_of_time(i).unwrap_or(1.0),
+        unit: unit_of_time(i).unwrap_or(TimeUnit::Unstated),
         single_precision: places[i].0.number == Number::F32,
     });
     let samples = Hdf5Samples {

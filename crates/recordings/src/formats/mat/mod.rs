@@ -12,8 +12,8 @@ mod samples;
 
 use super::recording_format::{RecordingFormat, has};
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, TimeColumn, is_sample_rate, is_speed,
-    name_and_unit, one_length, one_rate, only_rate, seconds_per_unit, selected, speed_label, unclear_number,
+    MeasuredChannel, MeasuredFile, Options, Recording, TimeColumn, TimeUnit, is_sample_rate, is_speed,
+    name_and_unit, one_length, one_rate, only_rate, selected, speed_label, time_unit, unclear_number,
 };
 use crate::Error;
 use elements::{Number, damaged, scalar, scan};
@@ -47,7 +47,7 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
             places.push((variable, place));
         }
     }
-    let is_time = |i: &usize| seconds_per_unit(&all[*i].name, all[*i].unit.as_deref()).is_some();
+    let is_time = |i: &usize| time_unit(&all[*i].name, all[*i].unit.as_deref()).is_some();
     let (times, rest): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(is_time);
     let candidates: Vec<MeasuredChannel> = rest.iter().map(|&i| all[i].clone()).collect();
     if candidates.is_empty() {
@@ -73,7 +73,7 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     };
     let time = time.map(|i| TimeColumn {
         name: all[i].name.clone(),
-        seconds_per_unit: seconds_per_unit(&all[i].name, all[i].unit.as_deref()).unwrap_or(1.0),
+        unit: time_unit(&all[i].name, all[i].unit.as_deref()).unwrap_or(TimeUnit::Unstated),
         single_precision: places[i].0.number == Number::F32,
     });
     let scalar = |is: fn(&str) -> bool| {

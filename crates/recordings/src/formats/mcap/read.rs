@@ -7,7 +7,7 @@
 use super::super::guarded::guarded;
 use super::ros2::{Field, decode, fields};
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, name_and_unit,
+    MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, TimeUnit, name_and_unit,
     one_rate, selected,
 };
 use crate::{Column, Error, Kind, Value};
@@ -99,7 +99,7 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     let labels = labels.map(|(name, value)| label(name, value)).collect();
     let time = TimeColumn {
         name: "log_time".into(),
-        seconds_per_unit: 1e-9,
+        unit: TimeUnit::Seconds(1e-9),
         single_precision: false,
     };
     let count = channels.len();

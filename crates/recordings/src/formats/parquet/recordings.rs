@@ -2,8 +2,8 @@
 
 use super::ParquetFile;
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, name_and_unit,
-    one_rate, seconds_per_unit, selected,
+    MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, TimeUnit, name_and_unit,
+    one_rate, selected, time_unit,
 };
 use crate::{Column, Data, Error, Kind, Table, Value};
 use std::path::Path;
@@ -46,7 +46,7 @@ fn columns(path: &Path, file: &ParquetFile, options: &Options) -> Result<Measure
     let numbers = numbers.filter(|c| matches!(c.kind, Kind::Real | Kind::Integer));
     let (times, rest): (Vec<_>, Vec<_>) = numbers
         .map(channel)
-        .partition(|c| seconds_per_unit(&c.name, c.unit.as_deref()).is_some());
+        .partition(|c| time_unit(&c.name, c.unit.as_deref()).is_some());
     if rest.is_empty() {
         return Err(Error::damaged(
             "Parquet",
@@ -65,12 +65,12 @@ fn columns(path: &Path, file: &ParquetFile, options: &Options) -> Result<Measure
     let point = points.first().filter(|_| times.is_empty());
     let of_point = point.map(|(name, seconds)| TimeColumn {
         name: (*name).to_owned(),
-        seconds_per_unit: *seconds,
+        unit: TimeUnit::Seconds(*seconds),
         single_precision: false,
     });
     let time = times.first().map(|c| TimeColumn {
         name: c.column.clone(),
-        seconds_per_unit: seconds_per_unit(&c.name, c.unit.as_deref()).unwrap_or(1.0),
+        unit: time_unit(&c.name, c.unit.as_deref()).unwrap_or(TimeUnit::Unstated),
         single_precision: file.is_single_precision(&c.column),
     });
     let time = time.or(of_point);

@@ -43,9 +43,10 @@ fn one_clear_message_for_each_mistake() {
         ("cut.mat", &big_endian_mat(1, 50, &[0.0; 50])[..300], "it is cut off"),
         ("names.csv", b"a,b\n", "names of columns and no rows"),
         ("text.csv", b"a,b\nx,y\n", "no column of numbers"),
+        ("time.csv", b"Time,b\n0,2\n0.039,2\n0.078,1\n", "column `Time`: its heading has no unit: the sample rate would be 25.641 Hz if it is s, 25641.026 Hz if it is ms"),
         ("word.csv", b"a,b\n1,2\n1,two\n", "line 3, column `b`: found `two`"),
         ("short.csv", b"a,b\n1,2\n1", "line 3 has 1 cells where the first has 2"),
-        ("back.csv", b"t,b\n0,2\n0.1,2\n0.2,1\n0.3,1\n0.15,1\n0.4,1\n0.5,1\n0.6,1\n0.7,1\n0.8,1\n0.9,1\n1.0,1\n1.1,1\n1.2,1\n1.3,1\n1.4,1\n1.5,1\n1.6,1\n1.7,1\n1.8,1\n1.9,1\n2.0,1\n2.1,1\n", "column `t`: line 6 is at 0.15 s"),
+        ("back.csv", b"t_s,b\n0,2\n0.1,2\n0.2,1\n0.3,1\n0.15,1\n0.4,1\n0.5,1\n0.6,1\n0.7,1\n0.8,1\n0.9,1\n1.0,1\n1.1,1\n1.2,1\n1.3,1\n1.4,1\n1.5,1\n1.6,1\n1.7,1\n1.8,1\n1.9,1\n2.0,1\n2.1,1\n", "column `t_s`: line 6 is at 0.15 s"),
     ] {
         let message = message(&case(name, content), &Options::default());
         assert!(message.contains(expected), "{name}: {message}");

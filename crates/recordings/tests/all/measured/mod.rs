@@ -1,5 +1,6 @@
 //! Recordings of all formats, read back sample by sample.
 
+mod csv_dialects;
 mod damaged;
 mod hdf5;
 mod stated_rate;

@@ -184,7 +184,7 @@ impl Jobs {
 
     fn record(&self, submitted: &Submitted) -> Result<(), Error> {
         let text = serde_json::to_string_pretty(submitted).map_err(io::Error::from)?;
-        self.write(SUBMITTED, &text)
+        self.write(SUBMITTED, &(text + "\n"))
     }
 
     fn write(&self, name: &str, text: &str) -> Result<(), Error> {
