@@ -17,7 +17,6 @@ mod shaft;
 mod summary;
 mod table;
 mod units;
-mod warnings;
 mod window_length;
 
 pub use counted::counted;

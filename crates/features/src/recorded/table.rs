@@ -4,8 +4,8 @@ use super::counted::counted;
 use super::inputs::{Input, Stated};
 use super::shaft::{self, Crank};
 use super::units::{Role, Scaled, scaled};
-use super::warnings::clipped;
 use super::{Error, Said, Unit};
+use crate::cut_off::cut_off;
 use crate::{Cell, CrankAngles, Reason, column};
 use input::bundle_channel::{Meaning, unit_of_column};
 use recordings::measured::{Bridge, MeasuredChannel, MeasuredFile, Window};
@@ -48,6 +48,9 @@ fn first_columns() -> [Column; FIRST_COLUMNS] {
 fn warnings_column() -> Column {
     Column::new("warnings", Kind::Text, "what looks wrong with the window").optional()
 }
+
+/// Samples that are cut off, fewer of which are not worth a warning.
+const MANY: usize = 8;
 
 /// The last of a file's features, which stands behind those of all files.
 const MISSING: &str = "missing";
@@ -470,11 +473,13 @@ fn warnings(job: &Job, channels: &[Channel], crank: Option<String>) -> Option<St
         .iter()
         .filter(|c| c.unit != "Pa")
         .filter_map(|channel| {
-            let samples = clipped(&channel.samples)?;
-            Some(format!(
-                "{}: may be clipped, {samples} samples stand at its limits",
-                channel.name
-            ))
+            let samples = cut_off(&channel.samples);
+            (samples >= MANY).then(|| {
+                format!(
+                    "{}: may be clipped, {samples} samples stand at its limits",
+                    channel.name
+                )
+            })
         });
     let of_crank = gap.into_iter().chain(crank);
     let all: Vec<String> = of_crank.chain(bridged).chain(clipped).collect();
