@@ -86,6 +86,8 @@ pub(super) struct Layout {
     pub(super) channels: Vec<Scaled>,
     /// The chambers of the machine, under the names of the channels that have their pressures.
     chambers: Vec<Chamber>,
+    /// Why the bundle's machine gives no chambers, where there are pressures.
+    no_machine: Option<String>,
     /// Channels that are not in SI, with the reason where they have a unit.
     pub(super) without_unit: Vec<String>,
     features: Vec<Column>,
@@ -121,10 +123,12 @@ impl Layout {
         let channels = channels(input, file, said.unit.as_ref(), reference);
         let channels = channels.map_err(|reason| Error::in_file(&input.path, reason))?;
         let measured = || channels.iter().filter(|c| c.role == Role::Measured);
-        let chambers = input
-            .machine
-            .as_ref()
-            .map_or_else(Vec::new, |machine| machine.chambers_of(&channels));
+        let (chambers, no_machine) = match &input.machine {
+            Some(Ok(machine)) => (machine.chambers_of(&channels), None),
+            Some(Err(reason)) => (Vec::new(), Some(reason.clone())),
+            None => (Vec::new(), None),
+        };
+        let no_machine = no_machine.filter(|_| measured().any(|c| c.unit == "Pa"));
         let without_unit = measured().filter_map(without_unit).collect();
         let names = measured().map(|c| (c.name.as_str(), c.unit.as_str()));
         let own = |name: &str| file.labels().iter().position(|c| c.name == name);
@@ -159,6 +163,7 @@ impl Layout {
             file: shown,
             channels,
             chambers,
+            no_machine,
             without_unit,
             label_positions,
             known,
@@ -481,7 +486,9 @@ fn warnings(job: &Job, channels: &[Channel], crank: Option<String>) -> Option<St
                 )
             })
         });
-    let of_crank = gap.into_iter().chain(crank);
+    let no_machine = job.layout.no_machine.iter();
+    let no_machine = no_machine.map(|reason| format!("the bundle's machine is not used: {reason}"));
+    let of_crank = gap.into_iter().chain(crank).chain(no_machine);
     let all: Vec<String> = of_crank.chain(bridged).chain(clipped).collect();
     (!all.is_empty()).then(|| all.join("; "))
 }

@@ -1,0 +1,68 @@
+//! Features of files: what bundles say of them, and what looks wrong.
+
+use features::recorded::{CrankReference, Row, Said, Table, WindowLength, inputs, row};
+use recordings::Value;
+use recordings::measured::Options;
+use std::path::Path;
+
+fn said() -> Said {
+    Said {
+        options: Options::default(),
+        speed_rpm: None,
+        unit: None,
+        crank: CrankReference::default(),
+        machine: None,
+        allow_outside: false,
+        motion: false,
+    }
+}
+
+/// The names of the columns and the first row.
+fn first_row(path: &Path) -> (Vec<String>, Row) {
+    let said = said();
+    let inputs = inputs(&[path.to_owned()], &said).unwrap();
+    let table = Table::new(&inputs, &said).unwrap();
+    let names = table.schema().columns().iter();
+    let names = names.map(|column| column.name.clone()).collect();
+    let mut jobs = table.windows(WindowLength::parse("10 revolutions").unwrap());
+    (names, row(&jobs.next().unwrap().unwrap()))
+}
+
+fn number(names: &[String], row: &Row, column: &str) -> f64 {
+    let place = names.iter().position(|name| name == column).unwrap();
+    match row.values[place] {
+        Value::Real(number) => number,
+        ref other => panic!("{column}: {other:?}, {:?}", row.warning()),
+    }
+}
+
+fn shipped() -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/recordings/example-single-stage")
+}
+
+#[test]
+fn the_machine_of_a_bundle_gives_the_indicated_power() {
+    let (names, row) = first_row(&shipped());
+    let power = number(&names, &row, "cylinder_pressure.indicated_power_w");
+    assert!((1000.0..3000.0).contains(&power), "{power}");
+}
+
+#[test]
+fn a_machine_of_a_bundle_that_is_not_used_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let bundle = std::fs::read_to_string(shipped().join("recordings.yaml")).unwrap();
+    let bundle = bundle.replace("  rod_length_m: 0.6\n", "");
+    std::fs::write(folder.path().join("recordings.yaml"), bundle).unwrap();
+    for file in std::fs::read_dir(shipped()).unwrap() {
+        let file = file.unwrap().path();
+        if file.extension().is_some_and(|ending| ending == "parquet") {
+            let name = file.file_name().unwrap().to_owned();
+            std::fs::copy(file, folder.path().join(name)).unwrap();
+        }
+    }
+    let warning = first_row(folder.path()).1.warning().unwrap();
+    assert!(
+        warning.contains("the bundle's machine is not used") && warning.contains("rod_length_m"),
+        "{warning}"
+    );
+}
