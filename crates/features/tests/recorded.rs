@@ -66,3 +66,34 @@ fn a_machine_of_a_bundle_that_is_not_used_says_why() {
         "{warning}"
     );
 }
+
+/// A file of one channel over the time.
+fn csv(folder: &Path, samples: usize, cell: impl Fn(usize) -> String) -> std::path::PathBuf {
+    let path = folder.join("a.csv");
+    let lines = (0..samples).map(|i| format!("{:.4},{},1\n", i as f64 / 1000.0, cell(i)));
+    let text = format!("time [s],acc [m/s^2],u [V]\n{}", lines.collect::<String>());
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+/// The warning of the only window of a file of so many samples.
+fn warned(samples: usize, cell: fn(usize) -> String) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let path = csv(folder.path(), samples, cell);
+    let said = said();
+    let inputs = inputs(&[path], &said).unwrap();
+    let table = Table::new(&inputs, &said).unwrap();
+    let mut jobs = table.windows(WindowLength::Default);
+    row(&jobs.next().unwrap().unwrap()).warning().unwrap()
+}
+
+#[test]
+fn a_channel_without_features_is_warned_of() {
+    let few = warned(50, |i| (i % 7).to_string());
+    assert!(few.contains("acc: no features, 50 samples"), "{few}");
+    let none = warned(500, |_| "NaN".to_owned());
+    assert!(
+        none.contains("acc: no features, no sample is a number"),
+        "{none}"
+    );
+}

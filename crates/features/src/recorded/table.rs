@@ -426,7 +426,8 @@ pub fn row(job: &Job) -> Row {
         job.speed_rpm,
         job.sample_rate_hz,
     );
-    let warning = warnings(job, &channels, of_crank);
+    let empty = empty_channels(layout, &channels, &reasons);
+    let warning = warnings(job, &channels, of_crank, empty);
     row[columns - 1] = warning.clone().into();
     let reasons = layout.feature_positions.iter().copied().zip(reasons);
     Row {
@@ -463,7 +464,34 @@ impl Row {
     }
 }
 
-fn warnings(job: &Job, channels: &[Channel], crank: Option<String>) -> Option<String> {
+/// The channels without any feature in a window, with the reason.
+fn empty_channels(
+    layout: &Layout,
+    channels: &[Channel],
+    reasons: &[Option<Reason>],
+) -> Vec<String> {
+    let empty = channels.iter().filter_map(|channel| {
+        let begin = format!("{}.", crate::stem(&channel.name, &channel.unit));
+        let columns = layout.features.iter().zip(reasons);
+        let mut of_channel = columns.filter(|(column, _)| column.name.starts_with(&begin));
+        let (_, first) = of_channel.next()?;
+        let first = first.as_ref()?;
+        let is_empty = of_channel.all(|(_, reason)| reason.is_some());
+        let why = match channel.samples.iter().all(|x| x.is_nan()) {
+            true => "no sample is a number".to_owned(),
+            false => first.to_string(),
+        };
+        is_empty.then(|| format!("{}: no features, {why}", channel.name))
+    });
+    empty.collect()
+}
+
+fn warnings(
+    job: &Job,
+    channels: &[Channel],
+    crank: Option<String>,
+    empty: Vec<String>,
+) -> Option<String> {
     let gap = job.window.gap_s;
     let gap = gap.map(|gap| format!("{gap:.6} s are missing before the window"));
     let bridged = job.layout.channels.iter().zip(&job.window.bridged);
@@ -488,7 +516,7 @@ fn warnings(job: &Job, channels: &[Channel], crank: Option<String>) -> Option<St
         });
     let no_machine = job.layout.no_machine.iter();
     let no_machine = no_machine.map(|reason| format!("the bundle's machine is not used: {reason}"));
-    let of_crank = gap.into_iter().chain(crank).chain(no_machine);
+    let of_crank = gap.into_iter().chain(crank).chain(no_machine).chain(empty);
     let all: Vec<String> = of_crank.chain(bridged).chain(clipped).collect();
     (!all.is_empty()).then(|| all.join("; "))
 }
