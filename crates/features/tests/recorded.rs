@@ -97,3 +97,38 @@ fn a_channel_without_features_is_warned_of() {
         "{none}"
     );
 }
+
+#[test]
+fn a_crank_angle_that_counts_on_keeps_its_accuracy() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    let line = |i: u32| {
+        let angle = 3.6e7 + 2.7 * f64::from(i);
+        let acc = (3.0 * angle.to_radians()).sin();
+        format!("{:.4},{angle:.4},{acc:.6}\n", f64::from(i) / 1000.0)
+    };
+    let lines: String = (0..2000).map(line).collect();
+    let heading = "time [s],crank_angle_deg,acc [m/s^2]\n";
+    std::fs::write(&path, format!("{heading}{lines}")).unwrap();
+    let (names, row) = first_row(&path);
+    assert_eq!(row.warning(), None);
+    let order = number(&names, &row, "acc.order_03_m_s2");
+    assert!((order - 1.0).abs() < 1e-4, "{order}");
+    let residual = number(&names, &row, "acc.residual_rms_m_s2");
+    assert!(residual < 1e-4, "{residual}");
+}
+
+#[test]
+fn what_float32_rounds_off_or_cannot_hold_is_warned_of() {
+    let offset = warned(500, |i| format!("{}", 1e6 + (i as f64 * 0.1).sin()));
+    let expected = "acc: its values vary by 2.000e0, of which float32 rounds off";
+    assert!(
+        offset.contains(expected) && !offset.contains("clipped"),
+        "{offset}"
+    );
+    let huge = warned(500, |i| format!("{}e40", 1 + i % 3));
+    assert!(
+        huge.contains("no sample is a number up to 3.4e38"),
+        "{huge}"
+    );
+}

@@ -52,6 +52,9 @@ fn warnings_column() -> Column {
 /// Samples that are cut off, fewer of which are not worth a warning.
 const MANY: usize = 8;
 
+/// Share of what a channel varies by that may be rounded off without a warning.
+const ROUNDED: f64 = 1e-3;
+
 /// The last of a file's features, which stands behind those of all files.
 const MISSING: &str = "missing";
 
@@ -192,7 +195,7 @@ impl Layout {
 
     /// Where the crank stands at each of these samples of the channels; none without a channel
     /// for it.
-    pub(super) fn crank(&self, samples: &[&[f32]]) -> Option<Result<Crank, signal::Error>> {
+    pub(super) fn crank(&self, samples: &[&[f64]]) -> Option<Result<Crank, signal::Error>> {
         let mut channels = self.channels.iter().zip(samples);
         channels.find_map(|(channel, samples)| shaft::crank(samples, channel))
     }
@@ -200,7 +203,7 @@ impl Layout {
     /// What a line between two samples of each channel is.
     pub(super) fn bridges(&self) -> Vec<Bridge> {
         let bridge = |channel: &Scaled| match channel.role {
-            Role::CrankAngle { .. } => Bridge::Turn((TAU / channel.to_si.scale) as f32),
+            Role::CrankAngle { .. } => Bridge::Turn(TAU / channel.to_si.scale),
             _ => Bridge::Line,
         };
         self.channels.iter().map(bridge).collect()
@@ -341,7 +344,7 @@ pub struct Recorded {
 
 /// The channels of a window.
 pub fn recorded(job: &Job) -> Recorded {
-    let raw: Vec<&[f32]> = job.window.channels.iter().map(Vec::as_slice).collect();
+    let raw: Vec<&[f64]> = job.window.channels.iter().map(Vec::as_slice).collect();
     let crank = job.layout.crank(&raw).and_then(Result::ok);
     let crank = crank.filter(|crank| crank.from_top_dead_centre);
     Recorded {
@@ -368,7 +371,7 @@ fn channels_in_si(job: &Job) -> Vec<Channel> {
 pub fn row(job: &Job) -> Row {
     let (layout, columns) = (&*job.layout, job.columns);
     let channels = channels_in_si(job);
-    let raw: Vec<&[f32]> = job.window.channels.iter().map(Vec::as_slice).collect();
+    let raw: Vec<&[f64]> = job.window.channels.iter().map(Vec::as_slice).collect();
     let samples = raw.first().map_or(0, |samples| samples.len());
     let crank = layout.crank(&raw);
     let known = crank.as_ref().and_then(|crank| crank.as_ref().ok());
@@ -464,6 +467,25 @@ impl Row {
     }
 }
 
+/// That float32, in which features take samples, rounds off more than [`ROUNDED`] of what a channel varies by.
+fn rounded_off(channel: &Scaled, samples: &[f64]) -> Option<String> {
+    let is_exact = |x: &f64| x.is_nan() || f64::from(*x as f32) == *x;
+    if channel.role != Role::Measured || samples.iter().all(is_exact) {
+        return None;
+    }
+    let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let rounding = high.abs().max(low.abs()) * f64::from(f32::EPSILON);
+    let varies = high - low;
+    (varies > 0.0 && rounding > ROUNDED * varies).then(|| {
+        format!(
+            "{}: its values vary by {varies:.3e}, of which float32 rounds off {rounding:.1e} because the largest is \
+             {high:.3e}: take a constant off the column",
+            channel.name
+        )
+    })
+}
+
 /// The channels without any feature in a window, with the reason.
 fn empty_channels(
     layout: &Layout,
@@ -478,7 +500,7 @@ fn empty_channels(
         let first = first.as_ref()?;
         let is_empty = of_channel.all(|(_, reason)| reason.is_some());
         let why = match channel.samples.iter().all(|x| x.is_nan()) {
-            true => "no sample is a number".to_owned(),
+            true => format!("no sample is a number up to {:.1e}", f32::MAX),
             false => first.to_string(),
         };
         is_empty.then(|| format!("{}: no features, {why}", channel.name))
@@ -516,7 +538,10 @@ fn warnings(
         });
     let no_machine = job.layout.no_machine.iter();
     let no_machine = no_machine.map(|reason| format!("the bundle's machine is not used: {reason}"));
+    let rounded = job.layout.channels.iter().zip(&job.window.channels);
+    let rounded = rounded.filter_map(|(channel, samples)| rounded_off(channel, samples));
     let of_crank = gap.into_iter().chain(crank).chain(no_machine).chain(empty);
+    let of_crank = of_crank.chain(rounded);
     let all: Vec<String> = of_crank.chain(bridged).chain(clipped).collect();
     (!all.is_empty()).then(|| all.join("; "))
 }

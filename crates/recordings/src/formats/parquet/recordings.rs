@@ -122,7 +122,7 @@ impl Samples for ColumnSamples {
         &mut self,
         most: usize,
         times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
+        channels: &mut [Vec<f64>],
     ) -> Result<usize, Error> {
         let table = loop {
             match self.table.take() {
@@ -154,7 +154,7 @@ impl Samples for ColumnSamples {
             }
         }
         for (channel, data) in channels.iter_mut().zip(columns) {
-            channel.extend(rows.clone().map(|row| real(data, row) as f32));
+            channel.extend(rows.clone().map(|row| real(data, row)));
         }
         self.table = Some(table);
         Ok(rows.len())
@@ -270,12 +270,12 @@ impl Samples for RowSamples {
         &mut self,
         most: usize,
         _times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
+        channels: &mut [Vec<f64>],
     ) -> Result<usize, Error> {
         let there = self.channels.first().map_or(0, Vec::len);
         let rows = self.next..there.min(self.next.saturating_add(most));
         for (to, from) in channels.iter_mut().zip(&self.channels) {
-            to.extend_from_slice(&from[rows.clone()]);
+            to.extend(from[rows.clone()].iter().copied().map(f64::from));
         }
         self.next = rows.end;
         Ok(rows.len())

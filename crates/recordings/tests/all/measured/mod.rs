@@ -25,7 +25,8 @@ fn samples(mut recording: Recording, channels: usize) -> Vec<Vec<f32>> {
     let mut all = vec![Vec::new(); channels];
     // Blocks of any length give the same samples.
     while recording.read(77, &mut all).unwrap().samples > 0 {}
-    all
+    let single = |channel: Vec<f64>| channel.into_iter().map(|x| x as f32).collect();
+    all.into_iter().map(single).collect()
 }
 
 /// The channels by name, and the rate, of a file with one recording.
