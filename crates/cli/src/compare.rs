@@ -62,8 +62,8 @@ fn share_a_channel(paths: [&Path; 2], said: &Said) -> Result<(), Failure> {
     let [first, second] = paths.map(Path::display);
     let [a, b] = [a, b].map(|channels| channels.join(", "));
     Err(Failure::input(format!(
-        "the recordings have no channel in common, by name and unit.\n  {first}: {a}\n  {second}: {b}\nGive channels that \
-         are the same the same name: in recordings.yaml, or in the heading of the file"
+        "the recordings have no channel in common, by name and unit; give what is the same one name, in recordings.yaml or \
+         in the heading\n  {first}: {a}\n  {second}: {b}"
     )))
 }
 
