@@ -391,7 +391,7 @@ fn an_undecided_motion_is_not_called_not_chaotic() {
 
 #[test]
 fn a_rounded_peak_or_a_square_wave_is_not_cut_off() {
-    let turn = |i: i32| std::f64::consts::TAU * f64::from(i) / 4000.0;
+    let turn = |i: i32| TAU * f64::from(i) / 4000.0;
     let rounded = (0..80_000).map(|i| ((300.0 * turn(i).sin() / 0.061).round() * 0.061) as f32);
     let square = (0..8000).map(|i| if i % 100 < 50 { 1.0 } else { -1.0 });
     for (samples, per_revolution) in [(rounded.collect(), 4000.0), (square.collect(), 100.0)] {

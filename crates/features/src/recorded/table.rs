@@ -499,9 +499,10 @@ fn empty_channels(
         let (_, first) = of_channel.next()?;
         let first = first.as_ref()?;
         let is_empty = of_channel.all(|(_, reason)| reason.is_some());
-        let why = match channel.samples.iter().all(|x| x.is_nan()) {
-            true => format!("no sample is a number up to {:.1e}", f32::MAX),
-            false => first.to_string(),
+        let missing = channel.samples.iter().filter(|x| x.is_nan()).count();
+        let why = match (missing, channel.samples.len()) {
+            (0, _) => first.to_string(),
+            (n, of) => format!("{n} of {of} samples are no numbers up to {:.1e}", f32::MAX),
         };
         is_empty.then(|| format!("{}: no features, {why}", channel.name))
     });
