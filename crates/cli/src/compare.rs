@@ -4,9 +4,10 @@ use crate::progress::Progress;
 use crate::reading::Reading;
 use crate::result_format::{ResultFiles, ResultFormat};
 use crate::{Failure, console};
+use ::features::recorded::{Error, Said, Table, inputs};
 use ::report::{comparison_page, summary};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use sweep::comparison::compare;
 
 #[derive(Args, Debug)]
@@ -44,8 +45,35 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (said, length) = (arguments.reading.said()?, arguments.reading.window()?);
     let pool = console::pool()?;
     let paths = [arguments.a.as_path(), arguments.b.as_path()];
+    share_a_channel(paths, &said)?;
     let comparison = Progress::during("features of both", || compare(paths, &said, length, &pool))?;
     let page = comparison_page::render(&comparison)?;
     let lines = summary::comparison(&comparison);
     files.write(&comparison, &page, arguments.format, &lines)
+}
+
+/// Refuses recordings that have no channel in common.
+fn share_a_channel(paths: [&Path; 2], said: &Said) -> Result<(), Failure> {
+    let [a, b] = paths.map(|path| channels(path, said));
+    let (a, b) = (a?, b?);
+    if a.iter().any(|channel| b.contains(channel)) {
+        return Ok(());
+    }
+    let [first, second] = paths.map(Path::display);
+    let [a, b] = [a, b].map(|channels| channels.join(", "));
+    Err(Failure::input(format!(
+        "the recordings have no channel in common, by name and unit; give what is the same one name, in recordings.yaml or \
+         in the heading\n  {first}: {a}\n  {second}: {b}"
+    )))
+}
+
+/// The channels that a path has, each as `name [unit]`.
+fn channels(path: &Path, said: &Said) -> Result<Vec<String>, Error> {
+    let inputs = inputs(&[path.to_owned()], said)?;
+    let table = Table::new(&inputs, said)?;
+    let shown = |(name, unit): (&str, &str)| match unit {
+        "" => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
+    };
+    Ok(table.channels().into_iter().map(shown).collect())
 }

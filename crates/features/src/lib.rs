@@ -16,6 +16,7 @@
 //! A new feature is a function where its signal processing lives, and a line in the table.
 
 mod channel_features;
+mod cut_off;
 mod definition;
 mod envelope;
 mod missing;

@@ -8,6 +8,7 @@
 //! come from the decimated samples where no shaft is known, or where the shaft repeats less than half of
 //! the signal.
 
+use crate::cut_off::cut_off;
 use crate::definition::{Definition, Group};
 use crate::reason::Reason;
 use crate::spectral::crank_angle;
@@ -38,9 +39,7 @@ const COORDINATES: usize = 8;
 /// Order of the permutation entropy, and scales of the multiscale entropy.
 const ORDER: usize = 5;
 const SCALES: usize = 5;
-/// Samples in a row at an end of the range that count as cut off.
-const CUT_RUN: usize = 3;
-/// Share of such samples above which a signal is not analysed.
+/// Share of the samples that are cut off above which a signal is not analysed.
 const CUT_SHARE: f64 = 0.01;
 
 /// The motion of a window. Numbers are in the order of [`motion_definitions`].
@@ -206,7 +205,7 @@ impl Analysed {
         let samples = &channel.ok_or(Reason::NoChannel)?.samples;
         let channel: Vec<f64> = samples.iter().map(|x| f64::from(*x)).collect();
         let whole = times(&channel)?;
-        let share = cut_off(&channel);
+        let share = cut_off(samples) as f64 / samples.len() as f64;
         if share > CUT_SHARE {
             return Err(Reason::CutOff {
                 percent: 100.0 * share,
@@ -224,15 +223,6 @@ impl Analysed {
             sample_rate: window.sample_rate / factor as f64,
         })
     }
-}
-
-/// Share of the samples that stand in a row at an end of the range.
-fn cut_off(signal: &[f64]) -> f64 {
-    let low = signal.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = signal.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let runs = signal.chunk_by(|a, b| a == b);
-    let cut = runs.filter(|run| run.len() >= CUT_RUN && (run[0] == low || run[0] == high));
-    cut.map(<[f64]>::len).sum::<usize>() as f64 / signal.len() as f64
 }
 
 /// A verdict, how many of its samples there are in a second, and what the 0-1 test says of them.

@@ -390,6 +390,19 @@ fn an_undecided_motion_is_not_called_not_chaotic() {
 }
 
 #[test]
+fn a_rounded_peak_or_a_square_wave_is_not_cut_off() {
+    let turn = |i: i32| TAU * f64::from(i) / 4000.0;
+    let rounded = (0..80_000).map(|i| ((300.0 * turn(i).sin() / 0.061).round() * 0.061) as f32);
+    let square = (0..8000).map(|i| if i % 100 < 50 { 1.0 } else { -1.0 });
+    for (samples, per_revolution) in [(rounded.collect(), 4000.0), (square.collect(), 100.0)] {
+        let row = motion_of(&acceleration(samples), per_revolution);
+        if let Some(features::Cell::Text(reason)) = cell(&row, "lyapunov_reason") {
+            assert!(!reason.contains("cut off"), "{reason}");
+        }
+    }
+}
+
+#[test]
 fn bad_signals_have_no_motion_and_say_why() {
     let ramp = |n: usize| (0..n).map(|i| (i % 37) as f32).collect::<Vec<f32>>();
     let mut gap = ramp(8000);

@@ -4,7 +4,7 @@ use crate::bundle::{ANY_SPEED, Bundle};
 use crate::bundle_channel::Meaning;
 use crate::bundle_machine::from_bundle;
 use crate::error::{Error, Problem};
-use crate::machine_file::{MachineFile, synonyms};
+use crate::machine_file::{MachineFile, Resolved, synonyms};
 use crate::paths;
 use crate::run_settings::run_settings;
 use crate::schema::bundle_schema;
@@ -43,6 +43,25 @@ pub fn check(folder: &Path, document: &Document) -> Result<(), Error> {
     })
 }
 
+/// The machine of the bundle at the conditions of run `index`; none where the bundle has no machine.
+///
+/// # Errors
+/// What makes the machine invalid, with the lines.
+pub fn machine_of_run(bundle: &Bundle, index: usize) -> Result<Option<Resolved>, Error> {
+    if bundle.machine.is_null() {
+        return Ok(None);
+    }
+    let of_run = || {
+        let machine = from_bundle(&bundle.machine).map_err(|e| e.under("machine"))?;
+        let run = with_speed(
+            &bundle.runs[index].section,
+            &bundle.meanings(index, &machine)?,
+        );
+        at_run(&machine, &run, &format!("runs.{index}"))
+    };
+    of_run().map(Some).map_err(|error| bundle.locate(error))
+}
+
 /// A run with any speed in the place of one that its crank angle gives.
 fn with_speed(run: &Value, channels: &[Meaning]) -> Value {
     let mut run = run.clone();
@@ -56,7 +75,7 @@ fn with_speed(run: &Value, channels: &[Meaning]) -> Value {
 }
 
 /// The machine at the conditions of the run at `key`. What a run sets, or should, is wrong in the run.
-fn at_run(machine: &Value, run: &Value, key: &str) -> Result<(), Error> {
+fn at_run(machine: &Value, run: &Value, key: &str) -> Result<Resolved, Error> {
     let settings = run_settings(run, machine).map_err(|e| e.under(key))?;
     let mut conditions = machine.clone();
     let mut set = Vec::new();
@@ -65,16 +84,18 @@ fn at_run(machine: &Value, run: &Value, key: &str) -> Result<(), Error> {
         set.push(paths::keys(&conditions, path)?.join("."));
     }
     let resolved = MachineFile::from_tree(&conditions).and_then(|file| file.resolve());
-    let each = resolved.err().map_or(Vec::new(), Error::into_each);
-    let each = each.into_iter().map(|error| {
+    let in_bundle = |error: Error| {
         let is_set = set.iter().any(|path| path == error.key());
         let is_missing = matches!(error.problem(), Problem::Missing { .. });
         match key_of_run(&conditions, error.key()).filter(|_| is_set || is_missing) {
             Some(own) => in_run(&error, &own, key, &conditions),
             None => error.under("machine"),
         }
-    });
-    Error::all(each).map_or(Ok(()), Err)
+    };
+    resolved.map_err(|errors| {
+        let first = errors.clone();
+        Error::all(errors.into_each().into_iter().map(in_bundle)).unwrap_or(first)
+    })
 }
 
 /// The mistake of a machine at the key `own` of the run at `key`, which sets the value.

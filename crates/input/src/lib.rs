@@ -46,7 +46,7 @@ pub mod effects {
     };
 }
 
-pub use bundle_check::check as check_bundle;
+pub use bundle_check::{check as check_bundle, machine_of_run};
 pub use bundle_machine::from_bundle;
 pub use error::{Error, Place, Problem, nearest};
 pub use machine_file::{

@@ -35,7 +35,7 @@ pub(super) fn read(
     let mut pulses = None;
     let mut channels = Vec::new();
     for (channel, meaning) in listed() {
-        let samples = || samples_of(&series, channel).iter().map(|x| f64::from(*x));
+        let samples = || samples_of(&series, channel).iter().copied();
         match meaning {
             Meaning::CrankAngle(to_si) => {
                 let wrapped = samples().map(|x| to_si.apply(x).rem_euclid(TAU));

@@ -17,11 +17,11 @@ pub(super) struct Series {
     /// Time of the first sample, s.
     start_s: Option<f64>,
     columns: Vec<String>,
-    samples: Vec<Vec<f32>>,
+    samples: Vec<Vec<f64>>,
 }
 
 /// The samples of a channel.
-pub(super) fn samples_of<'a>(all: &'a [Series], channel: &Channel) -> &'a [f32] {
+pub(super) fn samples_of<'a>(all: &'a [Series], channel: &Channel) -> &'a [f64] {
     let is_of = |series: &&Series| {
         channel
             .file
@@ -161,7 +161,7 @@ impl Series {
             Some(recording) => recording.map_err(|e| e.to_string())?,
             None => return Err(format!("{} is empty", path.display())),
         };
-        let mut samples: Vec<Vec<f32>> = vec![Vec::new(); found.len()];
+        let mut samples: Vec<Vec<f64>> = vec![Vec::new(); found.len()];
         loop {
             let block = recording
                 .read(BLOCK, &mut samples)
@@ -202,7 +202,7 @@ impl Series {
         Ok(())
     }
 
-    fn column(&self, column: &str) -> &[f32] {
+    fn column(&self, column: &str) -> &[f64] {
         let place = self.columns.iter().position(|c| c == column);
         place.map_or(&[], |place| &self.samples[place])
     }
@@ -220,7 +220,7 @@ mod tests {
             file: name.into(),
             start_s,
             columns: vec!["a".to_owned()],
-            samples: vec![(0..count).map(|i| time(i) as f32).collect()],
+            samples: vec![(0..count).map(time).collect()],
         }
     }
 

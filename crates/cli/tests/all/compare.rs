@@ -101,3 +101,27 @@ fn a_comparison_that_is_there_stays() {
         "kept"
     );
 }
+
+#[test]
+fn recordings_without_a_channel_in_common_are_refused_with_the_channels_of_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let written = |name: &str, heading: &str| {
+        let path = folder.path().join(name);
+        let rows = (0..500).map(|i| format!("{:.4},{}\n", f64::from(i) / 1000.0, i % 7));
+        fs::write(&path, format!("{heading}\n{}", rows.collect::<String>())).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let a = written("a.csv", "time [s],acc [m/s^2]");
+    let b = written("b.csv", "time [s],pressure [Pa]");
+    let out = folder.path().join("compared");
+    let output = crosshead(&["compare", &a, &b, "--out", out.to_str().unwrap()]);
+    let told = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    for part in [
+        "no channel in common",
+        "a.csv: acc [m/s^2]",
+        "b.csv: pressure [Pa]",
+    ] {
+        assert!(told.contains(part), "{told}");
+    }
+}

@@ -180,7 +180,7 @@ fn the_workflow_sees_recordings_alone(bundle: &Path) {
     let step = TAU / 65_536.0;
     let per_sample = 500.0 / 60.0 * TAU / 10_000.0;
     for (i, read) in samples[angle].iter().enumerate() {
-        let ahead = f64::from(*read) - per_sample * i as f64;
+        let ahead = read - per_sample * i as f64;
         let ahead = ahead - TAU * (ahead / TAU).round();
         // Rounding to single precision aside, it is never ahead, and less than a step behind.
         assert!((-1.01 * step..0.01 * step).contains(&ahead), "{i}: {ahead}");

@@ -19,8 +19,8 @@ pub struct Input {
     pub(super) labels: Vec<(Column, Value)>,
     /// What the bundle says of its columns.
     pub(super) stated: BTreeMap<String, Stated>,
-    /// The machine, where it is known.
-    pub(super) machine: Option<KnownMachine>,
+    /// The machine, or why the bundle gives none, where anything is said of it.
+    pub(super) machine: Option<Result<KnownMachine, String>>,
 }
 
 impl Input {
@@ -125,7 +125,7 @@ pub fn inputs(paths: &[PathBuf], said: &Said) -> Result<Vec<Input>, Error> {
                     speed_rpm: said.speed_rpm,
                     labels: Vec::new(),
                     stated: BTreeMap::new(),
-                    machine: said.machine.clone(),
+                    machine: said.machine.clone().map(Ok),
                 },
             };
             inputs.push(input);
@@ -242,7 +242,7 @@ fn of_run(bundle: &Bundle, index: usize, of: usize, said: &Said) -> Result<Input
         stated: listed()
             .map(|(channel, meaning)| (channel.column.clone(), Stated::new(channel, meaning)))
             .collect(),
-        machine: (said.machine.clone()).or_else(|| KnownMachine::of_bundle(bundle)),
+        machine: (said.machine.clone().map(Ok)).or_else(|| KnownMachine::of_run(bundle, index)),
     })
 }
 

@@ -1,9 +1,9 @@
 //! The machine that recordings are of, as far as an indicator needs it.
 
 use super::units::{Role, Scaled};
+use input::Resolved;
 use input::bundle::Bundle;
 use input::bundle_channel::{Channel, Meaning, meaning};
-use input::{MachineFile, Resolved};
 use simulate::Chamber;
 use std::path::Path;
 use std::sync::Arc;
@@ -21,7 +21,9 @@ impl KnownMachine {
     /// # Errors
     /// A file that cannot be read, or that describes no machine.
     pub fn read(path: &Path) -> Result<Self, input::Error> {
-        Self::new(&input::machine_file::read(path)?)
+        Ok(Self::from_resolved(
+            &input::machine_file::read(path)?.resolve()?,
+        ))
     }
 
     /// This machine.
@@ -33,15 +35,13 @@ impl KnownMachine {
         }
     }
 
-    /// The machine section of a bundle. One that is missing, or does not say enough for a simulation, is
-    /// no mistake here: only the indicated power needs it.
-    pub(super) fn of_bundle(bundle: &Bundle) -> Option<Self> {
-        let tree = input::from_bundle(&bundle.machine).ok()?;
-        Self::new(&MachineFile::from_tree(&tree).ok()?).ok()
-    }
-
-    fn new(file: &MachineFile) -> Result<Self, input::Error> {
-        Ok(Self::from_resolved(&file.resolve()?))
+    /// The machine of a run of a bundle, or why its section gives none; none where the bundle has no section.
+    pub(super) fn of_run(bundle: &Bundle, index: usize) -> Option<Result<Self, String>> {
+        let machine = input::machine_of_run(bundle, index).transpose()?;
+        Some(match machine {
+            Ok(machine) => Ok(Self::from_resolved(&machine)),
+            Err(error) => Err(error.to_string().replace('\n', "; ")),
+        })
     }
 
     /// The names of its throws; one empty name for a machine of one.

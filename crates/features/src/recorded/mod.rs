@@ -17,7 +17,6 @@ mod shaft;
 mod summary;
 mod table;
 mod units;
-mod warnings;
 mod window_length;
 
 pub use counted::counted;
@@ -32,7 +31,9 @@ pub use units::Unit;
 pub use window_length::WindowLength;
 
 use recordings::Schema;
+use std::collections::BTreeSet;
 use table::{Columns, Layout};
+use units::Role;
 
 /// The table of features of some files.
 pub struct Table<'a> {
@@ -63,6 +64,15 @@ impl<'a> Table<'a> {
     /// The columns.
     pub fn schema(&self) -> &Schema {
         &self.schema
+    }
+
+    /// Names and units of the channels that have features.
+    pub fn channels(&self) -> BTreeSet<(&str, &str)> {
+        let channels = self.layouts.iter().flat_map(|layout| &layout.channels);
+        let measured = channels.filter(|channel| channel.role == Role::Measured);
+        measured
+            .map(|channel| (channel.name.as_str(), channel.unit.as_str()))
+            .collect()
     }
 
     /// The first file that has channels without a unit that is known, and these.

@@ -163,7 +163,7 @@ pub(super) struct Crank {
 }
 
 /// The crank of a window by its channel `by`; none where that is no reference.
-pub(super) fn crank(samples: &[f32], by: &Scaled) -> Option<Result<Crank, signal::Error>> {
+pub(super) fn crank(samples: &[f64], by: &Scaled) -> Option<Result<Crank, signal::Error>> {
     let from = |angles: Vec<f64>, top: Option<f64>| Crank {
         angles: angles
             .into_iter()
@@ -173,12 +173,11 @@ pub(super) fn crank(samples: &[f32], by: &Scaled) -> Option<Result<Crank, signal
     };
     match by.role {
         Role::CrankAngle { top_dead_centre } => {
-            let angles = samples.iter().map(|x| by.to_si.apply(f64::from(*x)));
+            let angles = samples.iter().map(|x| by.to_si.apply(*x));
             Some(Ok(from(angles.collect(), top_dead_centre)))
         }
         Role::Tacho { top_dead_centre } => {
-            let signal: Vec<f64> = samples.iter().map(|x| f64::from(*x)).collect();
-            Some(tacho::from_pulses(&signal).map(|angles| from(angles, top_dead_centre)))
+            Some(tacho::from_pulses(samples).map(|angles| from(angles, top_dead_centre)))
         }
         Role::Measured | Role::Unused => None,
     }

@@ -4,8 +4,8 @@ use super::counted::counted;
 use super::inputs::{Input, Stated};
 use super::shaft::{self, Crank};
 use super::units::{Role, Scaled, scaled};
-use super::warnings::clipped;
 use super::{Error, Said, Unit};
+use crate::cut_off::cut_off;
 use crate::{Cell, CrankAngles, Reason, column};
 use input::bundle_channel::{Meaning, unit_of_column};
 use recordings::measured::{Bridge, MeasuredChannel, MeasuredFile, Window};
@@ -49,6 +49,12 @@ fn warnings_column() -> Column {
     Column::new("warnings", Kind::Text, "what looks wrong with the window").optional()
 }
 
+/// Samples that are cut off, fewer of which are not worth a warning.
+const MANY: usize = 8;
+
+/// Share of what a channel varies by that may be rounded off without a warning.
+const ROUNDED: f64 = 1e-3;
+
 /// The last of a file's features, which stands behind those of all files.
 const MISSING: &str = "missing";
 
@@ -83,6 +89,8 @@ pub(super) struct Layout {
     pub(super) channels: Vec<Scaled>,
     /// The chambers of the machine, under the names of the channels that have their pressures.
     chambers: Vec<Chamber>,
+    /// Why the bundle's machine gives no chambers, where there are pressures.
+    no_machine: Option<String>,
     /// Channels that are not in SI, with the reason where they have a unit.
     pub(super) without_unit: Vec<String>,
     features: Vec<Column>,
@@ -118,10 +126,12 @@ impl Layout {
         let channels = channels(input, file, said.unit.as_ref(), reference);
         let channels = channels.map_err(|reason| Error::in_file(&input.path, reason))?;
         let measured = || channels.iter().filter(|c| c.role == Role::Measured);
-        let chambers = input
-            .machine
-            .as_ref()
-            .map_or_else(Vec::new, |machine| machine.chambers_of(&channels));
+        let (chambers, no_machine) = match &input.machine {
+            Some(Ok(machine)) => (machine.chambers_of(&channels), None),
+            Some(Err(reason)) => (Vec::new(), Some(reason.clone())),
+            None => (Vec::new(), None),
+        };
+        let no_machine = no_machine.filter(|_| measured().any(|c| c.unit == "Pa"));
         let without_unit = measured().filter_map(without_unit).collect();
         let names = measured().map(|c| (c.name.as_str(), c.unit.as_str()));
         let own = |name: &str| file.labels().iter().position(|c| c.name == name);
@@ -156,6 +166,7 @@ impl Layout {
             file: shown,
             channels,
             chambers,
+            no_machine,
             without_unit,
             label_positions,
             known,
@@ -184,7 +195,7 @@ impl Layout {
 
     /// Where the crank stands at each of these samples of the channels; none without a channel
     /// for it.
-    pub(super) fn crank(&self, samples: &[&[f32]]) -> Option<Result<Crank, signal::Error>> {
+    pub(super) fn crank(&self, samples: &[&[f64]]) -> Option<Result<Crank, signal::Error>> {
         let mut channels = self.channels.iter().zip(samples);
         channels.find_map(|(channel, samples)| shaft::crank(samples, channel))
     }
@@ -192,7 +203,7 @@ impl Layout {
     /// What a line between two samples of each channel is.
     pub(super) fn bridges(&self) -> Vec<Bridge> {
         let bridge = |channel: &Scaled| match channel.role {
-            Role::CrankAngle { .. } => Bridge::Turn((TAU / channel.to_si.scale) as f32),
+            Role::CrankAngle { .. } => Bridge::Turn(TAU / channel.to_si.scale),
             _ => Bridge::Line,
         };
         self.channels.iter().map(bridge).collect()
@@ -333,7 +344,7 @@ pub struct Recorded {
 
 /// The channels of a window.
 pub fn recorded(job: &Job) -> Recorded {
-    let raw: Vec<&[f32]> = job.window.channels.iter().map(Vec::as_slice).collect();
+    let raw: Vec<&[f64]> = job.window.channels.iter().map(Vec::as_slice).collect();
     let crank = job.layout.crank(&raw).and_then(Result::ok);
     let crank = crank.filter(|crank| crank.from_top_dead_centre);
     Recorded {
@@ -360,7 +371,7 @@ fn channels_in_si(job: &Job) -> Vec<Channel> {
 pub fn row(job: &Job) -> Row {
     let (layout, columns) = (&*job.layout, job.columns);
     let channels = channels_in_si(job);
-    let raw: Vec<&[f32]> = job.window.channels.iter().map(Vec::as_slice).collect();
+    let raw: Vec<&[f64]> = job.window.channels.iter().map(Vec::as_slice).collect();
     let samples = raw.first().map_or(0, |samples| samples.len());
     let crank = layout.crank(&raw);
     let known = crank.as_ref().and_then(|crank| crank.as_ref().ok());
@@ -418,7 +429,8 @@ pub fn row(job: &Job) -> Row {
         job.speed_rpm,
         job.sample_rate_hz,
     );
-    let warning = warnings(job, &channels, of_crank);
+    let empty = empty_channels(layout, &channels, &reasons);
+    let warning = warnings(job, &channels, of_crank, empty);
     row[columns - 1] = warning.clone().into();
     let reasons = layout.feature_positions.iter().copied().zip(reasons);
     Row {
@@ -455,7 +467,54 @@ impl Row {
     }
 }
 
-fn warnings(job: &Job, channels: &[Channel], crank: Option<String>) -> Option<String> {
+/// That float32, in which features take samples, rounds off more than [`ROUNDED`] of what a channel varies by.
+fn rounded_off(channel: &Scaled, samples: &[f64]) -> Option<String> {
+    let is_exact = |x: &f64| x.is_nan() || f64::from(*x as f32) == *x;
+    if channel.role != Role::Measured || samples.iter().all(is_exact) {
+        return None;
+    }
+    let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let rounding = high.abs().max(low.abs()) * f64::from(f32::EPSILON);
+    let varies = high - low;
+    (varies > 0.0 && rounding > ROUNDED * varies).then(|| {
+        format!(
+            "{}: its values vary by {varies:.3e}, of which float32 rounds off {rounding:.1e} because the largest is \
+             {high:.3e}: take a constant off the column",
+            channel.name
+        )
+    })
+}
+
+/// The channels without any feature in a window, with the reason.
+fn empty_channels(
+    layout: &Layout,
+    channels: &[Channel],
+    reasons: &[Option<Reason>],
+) -> Vec<String> {
+    let empty = channels.iter().filter_map(|channel| {
+        let begin = format!("{}.", crate::stem(&channel.name, &channel.unit));
+        let columns = layout.features.iter().zip(reasons);
+        let mut of_channel = columns.filter(|(column, _)| column.name.starts_with(&begin));
+        let (_, first) = of_channel.next()?;
+        let first = first.as_ref()?;
+        let is_empty = of_channel.all(|(_, reason)| reason.is_some());
+        let missing = channel.samples.iter().filter(|x| x.is_nan()).count();
+        let why = match (missing, channel.samples.len()) {
+            (0, _) => first.to_string(),
+            (n, of) => format!("{n} of {of} samples are no numbers up to {:.1e}", f32::MAX),
+        };
+        is_empty.then(|| format!("{}: no features, {why}", channel.name))
+    });
+    empty.collect()
+}
+
+fn warnings(
+    job: &Job,
+    channels: &[Channel],
+    crank: Option<String>,
+    empty: Vec<String>,
+) -> Option<String> {
     let gap = job.window.gap_s;
     let gap = gap.map(|gap| format!("{gap:.6} s are missing before the window"));
     let bridged = job.layout.channels.iter().zip(&job.window.bridged);
@@ -470,13 +529,20 @@ fn warnings(job: &Job, channels: &[Channel], crank: Option<String>) -> Option<St
         .iter()
         .filter(|c| c.unit != "Pa")
         .filter_map(|channel| {
-            let samples = clipped(&channel.samples)?;
-            Some(format!(
-                "{}: may be clipped, {samples} samples stand at its limits",
-                channel.name
-            ))
+            let samples = cut_off(&channel.samples);
+            (samples >= MANY).then(|| {
+                format!(
+                    "{}: may be clipped, {samples} samples stand at its limits",
+                    channel.name
+                )
+            })
         });
-    let of_crank = gap.into_iter().chain(crank);
+    let no_machine = job.layout.no_machine.iter();
+    let no_machine = no_machine.map(|reason| format!("the bundle's machine is not used: {reason}"));
+    let rounded = job.layout.channels.iter().zip(&job.window.channels);
+    let rounded = rounded.filter_map(|(channel, samples)| rounded_off(channel, samples));
+    let of_crank = gap.into_iter().chain(crank).chain(no_machine).chain(empty);
+    let of_crank = of_crank.chain(rounded);
     let all: Vec<String> = of_crank.chain(bridged).chain(clipped).collect();
     (!all.is_empty()).then(|| all.join("; "))
 }

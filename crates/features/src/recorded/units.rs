@@ -54,13 +54,13 @@ impl Scaled {
     }
 
     /// A sample in SI.
-    pub(super) fn in_si(&self, sample: f32) -> f32 {
+    pub(super) fn in_si(&self, sample: f64) -> f32 {
         match self.to_si {
             ToSi {
                 offset: 0.0,
                 scale: 1.0,
-            } => sample,
-            to_si => to_si.apply(f64::from(sample)) as f32,
+            } => sample as f32,
+            to_si => to_si.apply(sample) as f32,
         }
     }
 }

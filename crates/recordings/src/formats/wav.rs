@@ -229,19 +229,19 @@ impl Encoding {
         }
     }
 
-    fn decode(self, b: &[u8]) -> f32 {
+    fn decode(self, b: &[u8]) -> f64 {
         match (self, b) {
-            (Self::U8, &[a]) => (f32::from(a) - 128.0) / 128.0,
-            (Self::I16, &[a, b]) => f32::from(i16::from_le_bytes([a, b])) / 32_768.0,
-            (Self::I24, &[a, b, c]) => (i32::from_le_bytes([0, a, b, c]) >> 8) as f32 / 8_388_608.0,
+            (Self::U8, &[a]) => (f64::from(a) - 128.0) / 128.0,
+            (Self::I16, &[a, b]) => f64::from(i16::from_le_bytes([a, b])) / 32_768.0,
+            (Self::I24, &[a, b, c]) => f64::from(i32::from_le_bytes([0, a, b, c]) >> 8) / 8_388_608.0,
             (Self::I32, &[a, b, c, d]) => {
-                (f64::from(i32::from_le_bytes([a, b, c, d])) / 2_147_483_648.0) as f32
+                f64::from(i32::from_le_bytes([a, b, c, d])) / 2_147_483_648.0
             }
-            (Self::F32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),
+            (Self::F32, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
             (Self::F64, &[a, b, c, d, e, f, g, h]) => {
-                f64::from_le_bytes([a, b, c, d, e, f, g, h]) as f32
+                f64::from_le_bytes([a, b, c, d, e, f, g, h])
             }
-            _ => f32::NAN,
+            _ => f64::NAN,
         }
     }
 }
@@ -251,7 +251,7 @@ impl Samples for WavSamples {
         &mut self,
         most: usize,
         _times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
+        channels: &mut [Vec<f64>],
     ) -> Result<usize, Error> {
         let frames = most.min(usize::try_from(self.frames_left).unwrap_or(usize::MAX));
         let frame = self.format.frame_bytes();

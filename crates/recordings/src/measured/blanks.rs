@@ -15,11 +15,11 @@ pub enum Bridge {
     /// The straight one.
     Line,
     /// That of an angle, the shorter way round a turn of so many of the channel's units.
-    Turn(f32),
+    Turn(f64),
 }
 
 /// Where samples without a number stand, as ranges.
-fn gaps(samples: &[f32]) -> impl Iterator<Item = Range<usize>> {
+fn gaps(samples: &[f64]) -> impl Iterator<Item = Range<usize>> {
     let mut end = 0;
     samples
         .chunk_by(|a, b| a.is_nan() == b.is_nan())
@@ -34,13 +34,13 @@ fn gaps(samples: &[f32]) -> impl Iterator<Item = Range<usize>> {
 ///
 /// A channel without a stretch of `shortest` samples between such gaps is passed over. It is not
 /// recorded here, or more slowly than the others, and must not cut them to pieces.
-pub(super) fn first_long_gap(channels: &[&[f32]], shortest: usize) -> Option<Range<usize>> {
-    let long = |samples: &&[f32]| -> Vec<Range<usize>> {
+pub(super) fn first_long_gap(channels: &[&[f64]], shortest: usize) -> Option<Range<usize>> {
+    let long = |samples: &&[f64]| -> Vec<Range<usize>> {
         gaps(samples)
             .filter(|gap| gap.len() > LONGEST_BRIDGED)
             .collect()
     };
-    let recorded = |samples: &[f32], gaps: &[Range<usize>]| {
+    let recorded = |samples: &[f64], gaps: &[Range<usize>]| {
         let starts = std::iter::once(0).chain(gaps.iter().map(|gap| gap.end));
         let ends = gaps.iter().map(|gap| gap.start).chain([samples.len()]);
         starts.zip(ends).any(|(start, end)| end - start >= shortest)
@@ -54,7 +54,7 @@ pub(super) fn first_long_gap(channels: &[&[f32]], shortest: usize) -> Option<Ran
 }
 
 /// Bridges the short gaps of a channel; how many samples that gave.
-pub(super) fn bridge(samples: &mut [f32], bridge: Bridge) -> usize {
+pub(super) fn bridge(samples: &mut [f64], bridge: Bridge) -> usize {
     let short: Vec<Range<usize>> = gaps(samples)
         .filter(|gap| gap.len() <= LONGEST_BRIDGED && gap.len() < samples.len())
         .collect();
@@ -67,9 +67,9 @@ pub(super) fn bridge(samples: &mut [f32], bridge: Bridge) -> usize {
             Bridge::Line => to - from,
             Bridge::Turn(turn) => (to - from) - turn * ((to - from) / turn).round(),
         };
-        let steps = (gap.len() + 1) as f32;
+        let steps = (gap.len() + 1) as f64;
         for (i, sample) in samples[gap.clone()].iter_mut().enumerate() {
-            *sample = from + rise * ((i + 1) as f32 / steps);
+            *sample = from + rise * ((i + 1) as f64 / steps);
         }
     }
     short.iter().map(Range::len).sum()
@@ -79,7 +79,7 @@ pub(super) fn bridge(samples: &mut [f32], bridge: Bridge) -> usize {
 mod tests {
     use super::*;
 
-    const NAN: f32 = f32::NAN;
+    const NAN: f64 = f64::NAN;
 
     #[test]
     fn short_gaps_are_bridged_and_counted() {
@@ -107,7 +107,7 @@ mod tests {
         let mut slow = vec![NAN; 100];
         (0..100).step_by(10).for_each(|i| slow[i] = 1.0);
         let dead = vec![NAN; 100];
-        let find = |channels: &[&[f32]]| first_long_gap(channels, 30);
+        let find = |channels: &[&[f64]]| first_long_gap(channels, 30);
         assert_eq!(find(&[&whole, &broken]), Some(40..50));
         assert_eq!(find(&[&whole, &slow, &dead]), None);
         assert_eq!(first_long_gap(&[&broken], 60), None);

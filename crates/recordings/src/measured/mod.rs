@@ -6,7 +6,7 @@
 //! its samples in blocks, and [`Windows`] cuts these into windows. Memory is that of a block and of
 //! a window, for a file of any length.
 //!
-//! Samples become float32. A cell without a number, and an infinite one, becomes NaN, which the caller has to handle:
+//! A cell without a number, and one beyond the range of float32, becomes NaN, which the caller has to handle:
 //! [`Windows::bridging`] bridges short gaps and splits at long ones.
 
 mod blanks;
@@ -92,7 +92,7 @@ pub struct Recording {
     expansion: Expansion,
     /// Samples that are decoded and not handed out, from `next` on.
     times: Vec<f64>,
-    block: Vec<Vec<f32>>,
+    block: Vec<Vec<f64>>,
     next: usize,
     gap_s: Option<f64>,
 }
@@ -114,7 +114,7 @@ pub(crate) trait Samples: Send {
         &mut self,
         most: usize,
         times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
+        channels: &mut [Vec<f64>],
     ) -> Result<usize, Error>;
 
     /// The time from which times count once some were read, s since 1970 or since midnight; 0 where they are numbers.
@@ -267,7 +267,7 @@ impl Recording {
     ///
     /// # Errors
     /// When the file is damaged or ends too early.
-    pub fn peek(&mut self) -> Result<Vec<&[f32]>, Error> {
+    pub fn peek(&mut self) -> Result<Vec<&[f64]>, Error> {
         if self.next == self.decoded() {
             self.refill()?;
         }
@@ -278,7 +278,7 @@ impl Recording {
     ///
     /// # Errors
     /// When the file is damaged or ends too early, or its times run backwards.
-    pub fn read(&mut self, most: usize, into: &mut [Vec<f32>]) -> Result<Block, Error> {
+    pub fn read(&mut self, most: usize, into: &mut [Vec<f64>]) -> Result<Block, Error> {
         if self.next == self.decoded() && !self.refill()? {
             return Ok(Block {
                 samples: 0,
@@ -355,9 +355,10 @@ fn place(samples: &dyn Samples, sample: u64) -> String {
 }
 
 /// Samples beyond all numbers of float32 are no measurements: they become NaN, missing ones.
-fn missing_where_infinite(samples: &mut [f32]) {
-    for sample in samples.iter_mut().filter(|sample| sample.is_infinite()) {
-        *sample = f32::NAN;
+fn missing_where_infinite(samples: &mut [f64]) {
+    let most = f64::from(f32::MAX);
+    for sample in samples.iter_mut().filter(|sample| sample.abs() > most) {
+        *sample = f64::NAN;
     }
 }
 

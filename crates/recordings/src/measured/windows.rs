@@ -23,7 +23,7 @@ pub struct Window {
     /// Time that is missing before it, s: a window never has a gap within.
     pub gap_s: Option<f64>,
     /// The samples of each channel.
-    pub channels: Vec<Vec<f32>>,
+    pub channels: Vec<Vec<f64>>,
     /// Samples of each channel that were missing and are bridged by a line ([`Windows::bridging`]).
     pub bridged: Vec<usize>,
 }
@@ -33,14 +33,14 @@ pub struct Windows {
     recording: Recording,
     sample_rate_hz: f64,
     length: Length,
-    buffer: Vec<Vec<f32>>,
+    buffer: Vec<Vec<f64>>,
     /// Start of the stretch, and the first sample of the buffer within it.
     stretch_s: f64,
     first: u64,
     windows: u64,
     gap_s: Option<f64>,
     /// Gaps, and the samples behind each, that belong to the next stretches.
-    ahead: VecDeque<(f64, Vec<Vec<f32>>)>,
+    ahead: VecDeque<(f64, Vec<Vec<f64>>)>,
     left_out: u64,
     ended: bool,
     blanks: Option<Blanks>,
@@ -111,7 +111,7 @@ impl Windows {
     fn cut(&mut self, samples: usize) -> Window {
         let start_s = self.stretch_s + self.first as f64 / self.sample_rate_hz;
         let channels = self.buffer.iter_mut();
-        let mut channels: Vec<Vec<f32>> = channels
+        let mut channels: Vec<Vec<f64>> = channels
             .map(|channel| {
                 let rest = channel.split_off(samples);
                 std::mem::replace(channel, rest)
@@ -166,7 +166,7 @@ impl Windows {
         let Some(blanks) = &mut self.blanks else {
             return false;
         };
-        let next: Vec<&[f32]> = self.buffer.iter().map(|c| &c[..samples]).collect();
+        let next: Vec<&[f64]> = self.buffer.iter().map(|c| &c[..samples]).collect();
         let Some(gap) = blanks::first_long_gap(&next, blanks.shortest) else {
             return false;
         };
@@ -183,7 +183,7 @@ impl Windows {
     }
 
     /// Begins the stretch after a gap.
-    fn begin(&mut self, gap_s: f64, samples: Vec<Vec<f32>>) {
+    fn begin(&mut self, gap_s: f64, samples: Vec<Vec<f64>>) {
         let read = self.first + self.buffered() as u64;
         self.stretch_s += read as f64 / self.sample_rate_hz + gap_s;
         // Two gaps without a sample between them are one.

@@ -34,7 +34,7 @@ pub fn recorded_in(run: &str) -> [Vec<f64>; 4] {
     }
     let of = |column: &str| {
         let place = names.iter().position(|name| name == column).unwrap();
-        samples[place].iter().map(|x| f64::from(*x)).collect()
+        samples[place].clone()
     };
     let time = (0..SAMPLES).map(|i| i as f64 / 20_000.0).collect();
     let [angle, acceleration, pressure] = [

@@ -293,7 +293,7 @@ impl CsvSamples {
         self.start.map_or(0.0, |ns| ns as f64 * 1e-9)
     }
 
-    fn row(&mut self, times: &mut Vec<f64>, channels: &mut [Vec<f32>]) -> Result<(), Error> {
+    fn row(&mut self, times: &mut Vec<f64>, channels: &mut [Vec<f64>]) -> Result<(), Error> {
         let mut found = 0;
         let mut last_is_empty = false;
         for cell in cells(&self.lines.line, self.separator) {
@@ -323,7 +323,7 @@ impl CsvSamples {
             }
             match target {
                 Target::Time | Target::Date => times.push(number),
-                Target::Channel(channel) => channels[channel].push(number as f32),
+                Target::Channel(channel) => channels[channel].push(number),
                 Target::Day | Target::Nowhere => {}
             }
         }
@@ -355,7 +355,7 @@ impl Samples for CsvSamples {
         &mut self,
         most: usize,
         times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
+        channels: &mut [Vec<f64>],
     ) -> Result<usize, Error> {
         let mut rows = 0;
         while rows < most {
@@ -374,7 +374,7 @@ impl Samples for CsvSamples {
             if self.empty > 0 {
                 self.empty -= 1;
                 self.held = true;
-                channels.iter_mut().for_each(|c| c.push(f32::NAN));
+                channels.iter_mut().for_each(|c| c.push(f64::NAN));
             } else {
                 self.row(times, channels)?;
             }

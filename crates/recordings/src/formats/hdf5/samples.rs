@@ -107,7 +107,7 @@ impl Samples for Hdf5Samples {
         &mut self,
         most: usize,
         times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
+        channels: &mut [Vec<f64>],
     ) -> Result<usize, Error> {
         let left = self.length - self.at;
         let samples = most.min(usize::try_from(left).unwrap_or(usize::MAX));
@@ -120,7 +120,7 @@ impl Samples for Hdf5Samples {
             }
             let mut first = 0;
             for reader in &self.channels {
-                let put = |place: usize, x: f64| channels[first + place].push(x as f32);
+                let put = |place: usize, x: f64| channels[first + place].push(x);
                 reader.read(self.at, samples, put)?;
                 first += reader.wanted.len();
             }

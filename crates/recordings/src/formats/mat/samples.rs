@@ -113,7 +113,7 @@ impl Samples for MatSamples {
         &mut self,
         most: usize,
         times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
+        channels: &mut [Vec<f64>],
     ) -> Result<usize, Error> {
         let samples = most.min(usize::try_from(self.left).unwrap_or(usize::MAX));
         self.left -= samples as u64;
@@ -122,7 +122,7 @@ impl Samples for MatSamples {
                 .map_err(failed(&self.path))?;
         }
         for (reader, channel) in self.channels.iter_mut().zip(channels) {
-            let put = |x| channel.push(x as f32);
+            let put = |x| channel.push(x);
             reader.read(samples, put).map_err(failed(&self.path))?;
         }
         Ok(samples)

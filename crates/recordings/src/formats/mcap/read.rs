@@ -336,7 +336,7 @@ impl Samples for McapSamples {
         &mut self,
         most: usize,
         times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
+        channels: &mut [Vec<f64>],
     ) -> Result<usize, Error> {
         let mut samples = 0;
         let Self {
@@ -362,7 +362,7 @@ impl Samples for McapSamples {
                 let first = *first_ns.get_or_insert(header.log_time);
                 times.push(header.log_time.wrapping_sub(first) as i64 as f64);
                 for (channel, &field) in channels.iter_mut().zip(wanted.iter()) {
-                    channel.push(numbers.get(field).map_or(f32::NAN, |x| *x as f32));
+                    channel.push(numbers.get(field).map_or(f64::NAN, |x| *x));
                 }
                 samples += 1;
             })?;

@@ -14,6 +14,9 @@ const BATCH_ROWS: usize = 1 << 13;
 /// The column with the sample rate of a row's lists.
 const RATE: &str = "sample_rate_hz";
 
+/// The columns with the samples in a revolution of lists over the crank angle, and with its speed.
+const PER_TURN: [&str; 2] = ["samples_per_revolution", "speed_rpm"];
+
 /// Opens a file. Where a column holds lists of samples, every row is a recording, and the other
 /// columns are its labels. Otherwise the columns of numbers are the channels of one recording; the time is a column that is
 /// called so, or else the first one of points in time.
@@ -119,7 +122,7 @@ impl Samples for ColumnSamples {
         &mut self,
         most: usize,
         times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
+        channels: &mut [Vec<f64>],
     ) -> Result<usize, Error> {
         let table = loop {
             match self.table.take() {
@@ -151,7 +154,7 @@ impl Samples for ColumnSamples {
             }
         }
         for (channel, data) in channels.iter_mut().zip(columns) {
-            channel.extend(rows.clone().map(|row| real(data, row) as f32));
+            channel.extend(rows.clone().map(|row| real(data, row)));
         }
         self.table = Some(table);
         Ok(rows.len())
@@ -192,15 +195,26 @@ fn rows(path: &Path, file: &ParquetFile, options: &Options) -> Result<MeasuredFi
     let recordings = file.batches_of(&names, 1)?.map(move |table| {
         let table = table?;
         let labels = table.columns()[..plain].iter().map(value).collect();
-        let of_file = has_rate.then(|| table.columns().get(plain)).flatten();
-        let of_file = of_file
-            .map(|data| real(data, 0))
-            .filter(|rate| !rate.is_nan());
+        let of_file = match has_rate {
+            true => table.columns().get(plain).map(|data| real(data, 0)),
+            false => rate_over_angle(&table),
+        };
+        let of_file = of_file.filter(|rate| !rate.is_nan());
         let rate = one_rate(&path, of_file, &options)?;
         let samples = row_samples(&path, &table, table.columns().len() - lists)?;
         Recording::new(&path, labels, lists, rate, None, samples)
     });
     Ok(MeasuredFile::of_rows(channels, labels, recordings))
+}
+
+/// The mean sample rate of a row whose samples stand at equal steps of the crank angle, Hz.
+fn rate_over_angle(table: &Table) -> Option<f64> {
+    let columns = table.schema().columns();
+    let [samples, speed_rpm] = PER_TURN.map(|name| {
+        let place = columns.iter().position(|c| c.name == name)?;
+        Some(real(&table.columns()[place], 0))
+    });
+    Some(samples? * speed_rpm? / 60.0)
 }
 
 /// The first value of a column.
@@ -256,12 +270,12 @@ impl Samples for RowSamples {
         &mut self,
         most: usize,
         _times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
+        channels: &mut [Vec<f64>],
     ) -> Result<usize, Error> {
         let there = self.channels.first().map_or(0, Vec::len);
         let rows = self.next..there.min(self.next.saturating_add(most));
         for (to, from) in channels.iter_mut().zip(&self.channels) {
-            to.extend_from_slice(&from[rows.clone()]);
+            to.extend(from[rows.clone()].iter().copied().map(f64::from));
         }
         self.next = rows.end;
         Ok(rows.len())

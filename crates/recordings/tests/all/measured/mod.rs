@@ -26,7 +26,8 @@ fn samples(mut recording: Recording, channels: usize) -> Vec<Vec<f32>> {
     let mut all = vec![Vec::new(); channels];
     // Blocks of any length give the same samples.
     while recording.read(77, &mut all).unwrap().samples > 0 {}
-    all
+    let single = |channel: Vec<f64>| channel.into_iter().map(|x| x as f32).collect();
+    all.into_iter().map(single).collect()
 }
 
 /// The channels by name, and the rate, of a file with one recording.
@@ -549,6 +550,32 @@ fn every_row_of_lists_is_a_recording() {
         assert_eq!(samples(recording, 2)[0], sine(n));
     }
     assert!(file.next().is_none());
+}
+
+#[test]
+fn lists_over_the_crank_angle_have_the_rate_of_their_speed() {
+    let schema = Schema::new(vec![
+        Column::new("speed_rpm", Kind::Real, "").unit("rpm"),
+        Column::new("acc_m_s2", Kind::Samples, "").unit("m/s^2"),
+        Column::new("samples_per_revolution", Kind::Integer, ""),
+    ]);
+    let mut table = Table::new(schema.unwrap());
+    for speed in [500.0, 350.0] {
+        let row = [Value::from(speed), sine(2048).into(), 512_i64.into()];
+        table.push(row.into()).unwrap();
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.parquet");
+    fs::write(&path, parquet::write_table(Vec::new(), &table, 1).unwrap()).unwrap();
+    let rates = |stated: Option<f64>| -> Result<Vec<Option<f64>>, recordings::Error> {
+        let file = MeasuredFile::open(&path, &options(&[], stated))?;
+        file.map(|recording| Ok(recording?.sample_rate_hz()))
+            .collect()
+    };
+    let expected = [500.0, 350.0].map(|speed| Some(512.0 * speed / 60.0));
+    assert_eq!(rates(None).unwrap(), expected);
+    // One rate for all speeds is wrong.
+    assert!(rates(Some(4266.6667)).is_err());
 }
 
 fn mcap_bytes(n: usize) -> Vec<u8> {
