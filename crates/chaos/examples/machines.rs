@@ -5,7 +5,7 @@
 //! cargo run --release -p crosshead-chaos --example machines -- 1     # seed
 //! ```
 #![allow(clippy::print_stdout, reason = "an example prints")]
-use chaos::regime::{Regime, Verdict, chance_at_a_phase, driven_verdict, verdict};
+use chaos::regime::{Phase, Regime, Verdict, chance_at_a_phase, driven_verdict, verdict};
 use chaos::test_systems::{Machine, Memory};
 use chaos::{Error, delay};
 
@@ -42,7 +42,7 @@ fn main() -> Result<(), Error> {
 
 /// The verdict with a crank angle, as crate features comes to it.
 fn with_drive(signal: &[f64], blind: Regime) -> Result<Regime, Error> {
-    let driven: Option<Verdict> = driven_verdict(signal, PER_CYCLE)?;
+    let driven: Option<Verdict> = driven_verdict(signal, PER_CYCLE, Phase::Recorded)?;
     Ok(match driven {
         Some(verdict) => verdict.regime,
         None if blind == Regime::Chaotic && chance_at_a_phase(signal, PER_CYCLE) => {

@@ -20,7 +20,7 @@ use chaos::entropy::{multiscale_entropy, permutation_entropy, sample_entropy};
 use chaos::forced::{FEWEST_CYCLES, Growth};
 use chaos::neighbours::Delays;
 use chaos::recurrence::recurrence;
-use chaos::regime::{Regime, Verdict, chance_at_a_phase, driven_verdict, verdict};
+use chaos::regime::{Phase, Regime, Verdict, chance_at_a_phase, driven_verdict, verdict};
 use chaos::zero_one::zero_one;
 use signal::angle_resampling::AngleGrid;
 use signal::decimate::Decimator;
@@ -258,7 +258,11 @@ fn judged(window: &Window, analysed: &Analysed) -> Result<Judged, Reason> {
             return Err(signal::Error::TooFewRevolutions { needed, got }.into());
         }
         let per_second = window.sample_rate / grid.samples_per_revolution();
-        if let Some(verdict) = driven_verdict(revolutions.samples(), PER_REVOLUTION)? {
+        let phase = match window.crank_angle {
+            Some(_) => Phase::Recorded,
+            None => Phase::Stated,
+        };
+        if let Some(verdict) = driven_verdict(revolutions.samples(), PER_REVOLUTION, phase)? {
             return Ok(Judged {
                 verdict,
                 sample_rate: per_second * PER_REVOLUTION as f64,
