@@ -63,7 +63,7 @@ use varied::Varied;
 pub const MOST_CASES: u64 = 100_000_000;
 
 /// Changes when the same plan would give other bytes.
-const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 3");
+const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 4");
 
 /// The plan of a sweep.
 #[derive(Clone, Debug)]

@@ -461,6 +461,24 @@ fn cases_that_differ_in_the_sensors_effects_stay_together() {
 }
 
 #[test]
+fn one_machine_is_one_group_however_its_values_are_written() {
+    let rest = "cases:
+  - grid: {joints: [[], [big_end], [small_end]], clearance: {from: 0.1 mm, to: 0.3 mm, count: 3}, speed: 500 rpm}
+  - grid: {joints: [[], [big_end], [small_end]], clearance: [0.1 mm, 200 um, 0.3 mm], speed: 52.35987755982989 rad/s}
+";
+    let cases = cases(&plan_of("single-stage.yaml", &[], rest));
+    let (first, second) = cases.split_at(cases.len() / 2);
+    for (one, other) in first.iter().zip(second) {
+        assert_eq!(one.group, other.group, "{}", one.id);
+        assert_eq!(one.split, other.split, "{}", one.id);
+    }
+    let groups: BTreeSet<u64> = first.iter().map(|case| case.group).collect();
+    assert_eq!(groups.len(), 7);
+    // Steps are the decimals that a list would have.
+    assert_eq!(first[2].labels.clearances_m[1], 2e-4);
+}
+
+#[test]
 fn columns_have_roles() {
     let rest = "cases: [{grid: {joints: [[], [big_end]], clearance: 0.1 mm, crosshead.mass: [18 kg, 19 kg]}}]
 vary: {joints.big_end.contact.damping: {lognormal: {factor: 1.5}}}
