@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use input::effects::{Entry, Parameter, entry};
+use input::effects::{Choice, Entry, Parameter, entry};
 use mechanism::declaration::Kind;
 use serde_json::{Map, Value};
 
@@ -80,6 +80,25 @@ impl VariedEffect {
     /// Where the machine file `tree` has it in its list, if it does.
     pub(crate) fn index_in(&self, tree: &Value) -> Option<usize> {
         items(tree).position(|item| item.is_some_and(|(id, _)| id == self.id))
+    }
+
+    /// The joint that it acts on, where it names one.
+    pub(crate) fn joint(&self) -> Option<&str> {
+        let names = entry(self.id.name)?.places.iter();
+        let of_joint = |choice: &&Choice| choice.key == "joint";
+        let is_named = names.filter(of_joint).count() > 0;
+        self.id
+            .part
+            .first()
+            .filter(|_| is_named)
+            .map(String::as_str)
+    }
+
+    /// Whether `joint`, as labels call it, is one that it acts on.
+    pub(crate) fn is_at(&self, joint: &str) -> bool {
+        let (throw, own) = joint.rsplit_once('.').unwrap_or(("", joint));
+        let is_of_throw = self.id.throw.as_deref().is_none_or(|own| own == throw);
+        self.joint() == Some(own) && (is_of_throw || own == "main")
     }
 
     /// Its name in the machine file.
@@ -173,6 +192,22 @@ pub(crate) fn completed<'a>(tree: &Value, paths: impl Iterator<Item = &'a str>) 
         }
     }
     tree
+}
+
+/// Makes the effects at these positions of a machine file's list vanish.
+pub(crate) fn vanish(tree: &mut Value, positions: &[usize]) {
+    for position in positions {
+        let item = tree["effects"][position].as_object_mut();
+        let Some((name, section)) = item.and_then(|item| item.iter_mut().next()) else {
+            continue;
+        };
+        for parameter in entry(name).into_iter().flat_map(Entry::amplitudes) {
+            let stated = section.get_mut(parameter.key);
+            if let (Some(value), Some(absent)) = (stated, parameter.absent) {
+                *value = parameter.value(absent);
+            }
+        }
+    }
 }
 
 /// The amplitudes of `id` in a file; where it vanishes if the file does not have it.

@@ -14,6 +14,8 @@ use std::collections::BTreeMap;
 
 use mechanism::declaration::Kind;
 
+use crate::digits::{COMPARED, rounded};
+
 /// The type of a healthy case.
 const NORMAL: &str = "normal";
 /// The location of a healthy case.
@@ -41,7 +43,7 @@ impl Fault {
             kind: if guide { "other" } else { "bearing" },
             location: joint.to_owned(),
             name: joint.to_owned(),
-            size: vec![rounded(clearance)],
+            size: vec![rounded(clearance, COMPARED)],
         }
     }
 
@@ -74,14 +76,9 @@ impl Fault {
             },
             name: format!("{effect} {location}"),
             location,
-            size: size.into_iter().map(rounded).collect(),
+            size: size.into_iter().map(|x| rounded(x, COMPARED)).collect(),
         }
     }
-}
-
-/// A size to nine digits: one length in two units differs by rounding.
-fn rounded(size: f64) -> f64 {
-    format!("{size:.8e}").parse().unwrap_or(size)
 }
 
 /// `fault_type` of a case with these faults.

@@ -1,6 +1,6 @@
 //! What a machine file says, in SI units.
 
-use super::effects::Effects;
+use super::effects::{self, Effects};
 use super::normal_clearance::NormalClearance;
 use super::sensors;
 use super::top_sections::Sections;
@@ -33,6 +33,8 @@ pub struct Resolved {
     pub sample_rate: Option<f64>,
     /// Up to which clearances it is healthy.
     pub normal_clearance: NormalClearance,
+    /// Positions of the effects of the file that cannot act, as their joint is ideal. The machine does not have them.
+    pub idle_effects: Vec<usize>,
     effects: Effects,
 }
 
@@ -58,7 +60,8 @@ impl Sections {
         let mut prepared = self.clone();
         effects.prepare(&mut prepared).map_err(under)?;
         let (mut machine, normal_clearance) = prepared.machine()?;
-        effects.act(&mut machine).map_err(under)?;
+        let idle_effects = effects::idle(&self.effects, &machine).map_err(under)?;
+        effects.act(&mut machine, &idle_effects).map_err(under)?;
         let sensors = sensors::resolve(&self.sensors, &machine);
         let mut sensors = sensors.map_err(|e| places(e.under("sensors")))?;
         for sensor in &mut sensors {
@@ -71,6 +74,7 @@ impl Sections {
             sensors,
             sample_rate: self.sample_rate.map(|rate| rate.si()),
             normal_clearance,
+            idle_effects,
             effects,
         })
     }

@@ -127,7 +127,13 @@ fn without_amplitude_every_effect_leaves_the_machine_as_it_is() {
 
 #[test]
 fn every_effect_changes_the_machine_or_its_sensors_at_all_its_places() {
-    let plain = resolve(&tree());
+    // With a chamber at both ends of the cylinder.
+    let with = |items: Value| {
+        let mut tree = with(items);
+        tree["cylinder"]["crank_end"] = json!({"rod_radius": "20 mm", "clearance": "24 mm"});
+        tree
+    };
+    let plain = resolve(&with(json!([])));
     for entry in CATALOGUE.iter() {
         let mut places = vec![place(entry)];
         for choice in entry.places {
@@ -148,6 +154,23 @@ fn every_effect_changes_the_machine_or_its_sensors_at_all_its_places() {
             assert!(!same || ideal_main || no_hum, "{} {place:?}", entry.name);
         }
     }
+}
+
+#[test]
+fn an_effect_needs_play_in_its_joint() {
+    let film = |joint: &str| json!({"squeeze_film": {"joint": joint, "viscosity": "0.05 Pa s"}});
+    let found = resolve(&with(json!([film("main"), film("big_end")])));
+    assert_eq!(found.idle_effects, [0]);
+    assert_eq!(
+        found.machine,
+        resolve(&with(json!([film("big_end")]))).machine
+    );
+    // Also without a size.
+    let ideal = json!([{"thermal_clearance": {"joint": "main", "change": "0 um"}}]);
+    assert_eq!(resolve(&with(ideal)).idle_effects, [0]);
+    let leak = message(json!([{"ring_leakage": {"end": "crank", "area": "0 mm^2"}}]));
+    let key = "effects.0.ring_leakage.end: found 'crank', expected head";
+    assert!(leak.starts_with(key), "{leak}");
 }
 
 #[test]

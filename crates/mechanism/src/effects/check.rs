@@ -1,9 +1,9 @@
 //! Whether an effect goes together with a machine.
 
 use super::Law;
-use super::place::{Joint, Place};
+use super::place::{End, Joint, Place};
 use crate::declaration::Clash;
-use crate::machine::Machine;
+use crate::machine::{Machine, Throw};
 
 impl Law {
     /// Whether a machine, as it is without effects, can have it at `place`.
@@ -18,6 +18,23 @@ impl Law {
             }
             _ => Ok(()),
         }
+    }
+}
+
+impl Place {
+    /// Whether there is play for an effect on a joint to act on: it does nothing where the joint is ideal. Of an effect
+    /// that names no joint, true.
+    pub fn has_play(&self, machine: &Machine) -> bool {
+        self.joint.is_none() || !clearances(machine, self).is_empty()
+    }
+
+    /// Whether one of its throws has the chamber that it names.
+    pub fn has_chamber(&self, throws: &[Throw]) -> bool {
+        let mut throws = throws.iter().enumerate();
+        self.end != Some(End::Crank)
+            || throws.any(|(i, throw)| {
+                self.throw.is_none_or(|own| own == i) && throw.cylinder.crank_end.is_some()
+            })
     }
 }
 

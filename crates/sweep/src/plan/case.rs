@@ -3,12 +3,15 @@
 use std::f64::consts::PI;
 
 use input::Resolved;
+use mechanism::Machine;
 use mechanism::gas::Cylinder;
+use mechanism::lift::Lift;
 use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use simulate::{ExponentSettings, Extent, Motion, Settings};
 
+use crate::digits::{COMPARED, rounded};
 use crate::labels::Labels;
 use crate::split::Split;
 use crate::sweep_file::Windows;
@@ -91,20 +94,20 @@ impl OperatingPoint {
     }
 }
 
-/// A speed in rad/s as rev/min, to twelve digits: the way there and back rounds, and who looks for
+/// A speed in rad/s as rev/min, to the digits that are compared: the way there and back rounds, and who looks for
 /// the cases at 500 rpm must find them.
 pub(super) fn rpm(speed: f64) -> f64 {
-    let rpm = speed * 30.0 / PI;
-    format!("{rpm:.11e}").parse().unwrap_or(rpm)
+    rounded(speed * 30.0 / PI, COMPARED)
 }
 
 /// A number that stands for the physics of a case: the machine without sensors and names, and how
 /// it is run.
 ///
-/// It is the start of the SHA-256 of the machine's debug text, which holds every number exactly,
-/// names every law, and says nothing about joints that are ideal.
+/// It is the start of the SHA-256 of the machine's debug text, which holds every number to the digits that are
+/// compared, names every law, and says nothing about joints that are ideal.
 pub(super) fn group(case: &Resolved, settings: &Settings) -> u64 {
-    let text = format!("{:?} {settings:?}", case.machine);
+    let machine: Machine = Machine::lift(&[&case.machine], &mut |x| rounded(x[0], COMPARED));
+    let text = format!("{machine:?} {settings:?}");
     let digest = Sha256::digest(text.as_bytes());
     digest
         .iter()

@@ -23,17 +23,59 @@ impl Plan {
     /// found before anything is run.
     pub(super) fn try_cases(&self) -> Result<(), Error> {
         let mut start = 0;
+        let mut widest_m = vec![0.0_f64; self.joints.len()];
         for (position, block) in self.blocks.iter().enumerate() {
             for inside in block.probes() {
                 let case = self.case_before_splits((start + inside) * self.repeats);
-                if let Err(error) = case.and_then(|case| self.check_columns(&case)) {
+                let case = case.and_then(|case| self.check_columns(&case).map(|()| case));
+                let case = case.map_err(|error| {
                     let keys = block.keys(inside, &self.frame());
-                    return Err(self.blame(error, keys, position, inside));
-                }
+                    self.blame(error, keys, position, inside)
+                })?;
+                let wider = case.labels.clearances_m.iter().zip(&mut widest_m);
+                wider.for_each(|(clearance, widest)| *widest = widest.max(*clearance));
             }
             start += block.count();
         }
+        self.check_play(&widest_m)
+    }
+
+    /// Checks that the effects on joints can act in some case; `widest_m` are the widest clearances of the joints, m.
+    fn check_play(&self, widest_m: &[f64]) -> Result<(), Error> {
+        for effect in &self.effects {
+            let Some(place) = effect.joint() else {
+                continue;
+            };
+            let mut joints = self.joints.iter().zip(widest_m);
+            if joints.any(|(joint, widest)| effect.is_at(&joint.name) && *widest > 0.0) {
+                continue;
+            }
+            let name = format!("effects.{}", effect.name());
+            let found = format!("{}, which acts on {place}", effect.name());
+            let expected = format!(
+                "a clearance of {place} in some case, e.g. by an axis joints: the joint is ideal in all of them, so that the \
+                 effect does nothing"
+            );
+            let error = Error::unexpected(name, found, expected);
+            return Err(match self.setting(effect.name()) {
+                Some(key) => Error::new(key, error.problem().clone()),
+                None => error.under("machine"),
+            });
+        }
         Ok(())
+    }
+
+    /// Key in the sweep file of the first value that sets something of the effect `name`.
+    fn setting(&self, name: &str) -> Option<String> {
+        let blocks = self.blocks.iter();
+        let listed = blocks.flat_map(|block| {
+            let probes = block.probes().into_iter();
+            probes.flat_map(|inside| block.keys(inside, &self.frame()))
+        });
+        let varied = self.varied().map(|(key, path)| (key, path.to_owned()));
+        let names = |path: &str| path == "effects" || path.split('.').any(|part| part == name);
+        let mut all = listed.chain(varied);
+        all.find(|(_, path)| names(path)).map(|(key, _)| key)
     }
 
     /// All rows of a table have the same columns, so all cases have the same joints and sensors.

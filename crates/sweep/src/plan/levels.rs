@@ -4,6 +4,7 @@ use input::Error;
 use serde_json::Value;
 
 use super::sampler::same_dimension;
+use crate::digits::rounded;
 use crate::distribution::Distribution;
 use crate::sweep_file::{self, Amount, Spacing, Values};
 
@@ -12,7 +13,7 @@ use crate::sweep_file::{self, Amount, Spacing, Values};
 pub(super) enum Levels {
     /// As they stand in the file.
     List(Vec<Value>),
-    /// Equal steps from the first to the last.
+    /// Equal steps from the first to the last, each as the decimal that a list would have.
     Steps {
         ends: [Amount; 2],
         between: Distribution,
@@ -66,7 +67,7 @@ impl Levels {
                     0 => *first,
                     level if level == steps => *last,
                     level => Amount {
-                        si: between.quantile(level as f64 / steps as f64),
+                        si: rounded(between.quantile(level as f64 / steps as f64), f64::DIGITS),
                         ..*first
                     },
                 };

@@ -47,7 +47,7 @@ use sha2::{Digest, Sha256};
 use simulate::{Settings, Unrecordable};
 
 use crate::design::hash::unit;
-use crate::effects::{VariedEffect, completed};
+use crate::effects::{VariedEffect, completed, vanish};
 use crate::labels::{Joint, joints, labels};
 use crate::split;
 use crate::sweep_file::{self, Format, Licence, MOST_CASES_A_SHARD, Study, SweepFile, Windows};
@@ -63,7 +63,7 @@ use varied::Varied;
 pub const MOST_CASES: u64 = 100_000_000;
 
 /// Changes when the same plan would give other bytes.
-const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 3");
+const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 4");
 
 /// The plan of a sweep.
 #[derive(Clone, Debug)]
@@ -449,6 +449,7 @@ impl Plan {
             paths::set(&mut tree, &path, value)?;
         }
         let resolved = MachineFile::from_tree(&tree)?.resolve()?;
+        vanish(&mut tree, &resolved.idle_effects);
         let group = case::group(&resolved, &self.settings);
         Ok(Case {
             index,

@@ -9,6 +9,11 @@ use sweep::{Case, Plan};
 
 /// The single-stage machine with `changed` text, in a folder of its own, and a sweep of it.
 fn plan_of(machine: &str, changes: &[(&str, &str)], rest: &str) -> Plan {
+    tried(machine, changes, rest).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The same, or what is wrong with it.
+fn tried(machine: &str, changes: &[(&str, &str)], rest: &str) -> Result<Plan, input::Error> {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines");
     let mut text = std::fs::read_to_string(shipped.join(machine)).unwrap();
     for (from, to) in changes {
@@ -20,7 +25,7 @@ fn plan_of(machine: &str, changes: &[(&str, &str)], rest: &str) -> Plan {
     let sweep =
         format!("name: test\nmachine: machine.yaml\nrun: {{revolutions: 4, transient: 2}}\n{rest}");
     let document = Document::parse(&sweep, "sweep.yaml").unwrap();
-    Plan::new(&document, folder.path()).unwrap_or_else(|error| panic!("{error}"))
+    Plan::new(&document, folder.path())
 }
 
 fn cases(plan: &Plan) -> Vec<Case> {
@@ -295,7 +300,7 @@ fn whole_lists_of_effects_are_labels_too() {
         - [{ring_leakage: {area: 3 mm^2}}]
         - [{squeeze_film: {joint: big_end, viscosity: 0.1 Pa s}}, {ring_leakage: {area: 1 mm^2}}]
 ";
-    let plan = plan_of("single-stage.yaml", &[], rest);
+    let plan = plan_of("single-stage.yaml", &WORN_IN, rest);
     assert_eq!(
         faults(&plan),
         ["none", "ring_leakage", "ring_leakage+squeeze_film"]
@@ -307,6 +312,94 @@ fn whole_lists_of_effects_are_labels_too() {
     assert!(area.is_some(), "{:?}", plan.parameters);
     let column = "effects.ring_leakage.area_m2".to_owned();
     assert!(sizes(&plan).contains(&column), "{:?}", sizes(&plan));
+}
+
+#[test]
+fn an_effect_is_no_label_where_its_joint_is_ideal() {
+    let film = [(
+        "effects: []",
+        "effects: [{squeeze_film: {joint: small_end, viscosity: 0 Pa s}}]",
+    )];
+    let rest = "cases:
+  - grid: {joints: [[], [small_end]], clearance: 0.1 mm, effects.squeeze_film.viscosity: [0 Pa s, 0.02 Pa s]}
+";
+    let plan = plan_of("single-stage.yaml", &film, rest);
+    let expected = ["none", "none", "small_end", "small_end+squeeze_film"];
+    assert_eq!(faults(&plan), expected);
+    let cases = cases(&plan);
+    assert_eq!(cases[0].group, cases[1].group);
+    assert_ne!(cases[2].group, cases[3].group);
+    let viscosity = |case: &Case| plan.parameters[0].value(&case.tree);
+    assert_eq!(viscosity(&cases[0]), viscosity(&cases[1]));
+    // More clearance makes the joint clear.
+    let thermal = [(
+        "effects: []",
+        "effects: [{extra_clearance: {joint: big_end, clearance: 0 um}}, {thermal_clearance: {joint: big_end, change: 0 um}}]",
+    )];
+    let rest = "cases:
+  - grid: {effects.extra_clearance.clearance: [0 um, 90 um], effects.thermal_clearance.change: [0 um, 5 um]}
+";
+    let expected = [
+        "none",
+        "none",
+        "big_end+extra_clearance",
+        "big_end+extra_clearance+thermal_clearance",
+    ];
+    assert_eq!(
+        faults(&plan_of("single-stage.yaml", &thermal, rest)),
+        expected
+    );
+}
+
+#[test]
+fn an_effect_that_acts_in_no_case_is_refused() {
+    for effect in [
+        "squeeze_film: {joint: big_end, viscosity: 0 Pa s}",
+        "bearing_ovality: {joint: big_end, amplitude: 0 um}",
+        "thermal_clearance: {joint: big_end, change: 0 um}",
+    ] {
+        let (name, _) = effect.split_once(':').unwrap();
+        let list = format!("effects: [{{{effect}}}]");
+        let key = match name {
+            "squeeze_film" => "viscosity: [0 Pa s, 0.02 Pa s]",
+            "bearing_ovality" => "amplitude: [0 um, 10 um]",
+            _ => "change: [0 um, 50 um]",
+        };
+        let rest = format!(
+            "cases: [{{grid: {{joints: [[], [small_end]], clearance: 0.1 mm, effects.{name}.{key}}}}}]"
+        );
+        let error = tried("single-stage.yaml", &[("effects: []", &list)], &rest).unwrap_err();
+        let message = error.to_string();
+        let (key, _) = key.split_once(':').unwrap();
+        let expected = format!(
+            "effects.{name}.{key}.0: found {name}, which acts on big_end, expected a clearance of big_end"
+        );
+        assert!(message.contains(&expected), "{message}");
+        assert!(message.starts_with("sweep.yaml:4:"), "{message}");
+    }
+}
+
+#[test]
+fn a_chamber_that_the_cylinder_lacks_is_refused_at_the_effect() {
+    for (effect, key) in [
+        (
+            "ring_leakage: {end: crank, area: 0 mm^2}",
+            "ring_leakage.area",
+        ),
+        (
+            "valve_leakage: {end: crank, suction: 0 mm^2, discharge: 0 mm^2}",
+            "valve_leakage.suction",
+        ),
+    ] {
+        let list = format!("effects: [{{{effect}}}]");
+        let rest = format!("cases: [{{grid: {{effects.{key}: [0 mm^2, 5 mm^2]}}}}]");
+        let error = tried("single-stage.yaml", &[("effects: []", &list)], &rest).unwrap_err();
+        let message = error.to_string();
+        let (name, _) = key.split_once('.').unwrap();
+        let expected = format!("effects.0.{name}.end: found 'crank', expected head");
+        assert!(message.contains(&expected), "{message}");
+        assert!(message.contains("machine.yaml:"), "{message}");
+    }
 }
 
 #[test]
@@ -365,6 +458,24 @@ fn cases_that_differ_in_the_sensors_effects_stay_together() {
     // Three of 20 groups in validation and in test, each with one case of none and two of the gain.
     let counts: Vec<u64> = plan.census().cases("sensor_gain").into_values().collect();
     assert_eq!(counts, [6, 28, 6]);
+}
+
+#[test]
+fn one_machine_is_one_group_however_its_values_are_written() {
+    let rest = "cases:
+  - grid: {joints: [[], [big_end], [small_end]], clearance: {from: 0.1 mm, to: 0.3 mm, count: 3}, speed: 500 rpm}
+  - grid: {joints: [[], [big_end], [small_end]], clearance: [0.1 mm, 200 um, 0.3 mm], speed: 52.35987755982989 rad/s}
+";
+    let cases = cases(&plan_of("single-stage.yaml", &[], rest));
+    let (first, second) = cases.split_at(cases.len() / 2);
+    for (one, other) in first.iter().zip(second) {
+        assert_eq!(one.group, other.group, "{}", one.id);
+        assert_eq!(one.split, other.split, "{}", one.id);
+    }
+    let groups: BTreeSet<u64> = first.iter().map(|case| case.group).collect();
+    assert_eq!(groups.len(), 7);
+    // Steps are the decimals that a list would have.
+    assert_eq!(first[2].labels.clearances_m[1], 2e-4);
 }
 
 #[test]

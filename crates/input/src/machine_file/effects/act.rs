@@ -76,9 +76,9 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// The place in a machine with these throws.
+    /// The place in a machine with these throws, which must have it.
     pub fn resolve(&self, throws: &[Throw]) -> Result<effects::Place, Error> {
-        Ok(effects::Place {
+        let place = effects::Place {
             throw: self.throw(throws.iter().map(|t| t.name.as_str()))?,
             joint: self.joint.map(|joint| match joint {
                 Joint::Main => effects::Joint::Main,
@@ -89,7 +89,14 @@ impl Place {
                 End::Head => effects::End::Head,
                 End::Crank => effects::End::Crank,
             }),
-        })
+        };
+        match place.has_chamber(throws) {
+            true => Ok(place),
+            false => Err(Error::clash(
+                "end",
+                "head, or a cylinder with a crank_end: a single-acting one has no chamber there",
+            )),
+        }
     }
 
     /// What it says beyond where the effect acts.

@@ -14,7 +14,7 @@ pub use catalogue::{CATALOGUE, Choice, Entry, Parameter, at_path, entry, of_path
 pub use mechanism::declaration::{Kind, Proposal};
 
 pub(super) use act::{Draft, Joint, Place};
-pub(super) use present::Effects;
+pub(super) use present::{Effects, idle};
 pub(super) use section::EffectSection;
 
 use act::Act;

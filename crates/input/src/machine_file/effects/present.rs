@@ -59,15 +59,22 @@ impl Effects {
 
     /// Changes what the file says, before the machine is made of it.
     pub fn prepare(&self, file: &mut dyn Draft) -> Result<(), Error> {
-        self.each(|effect| effect.effect().prepare(file, &effect.place))
+        for (i, effect) in &self.0 {
+            let prepared = effect.effect().prepare(file, &effect.place);
+            prepared.map_err(|e| e.under(effect.entry.name).under(i))?;
+        }
+        Ok(())
     }
 
-    /// Changes the machine.
-    pub fn act(&self, machine: &mut Machine) -> Result<(), Error> {
-        self.each(|effect| {
-            let place = effect.place.resolve(&machine.throws)?;
-            effect.effect().act(machine, &place)
-        })
+    /// Changes the machine, but for the effects at these positions of the list.
+    pub fn act(&self, machine: &mut Machine, idle: &[usize]) -> Result<(), Error> {
+        let acting = self.0.iter().filter(|(i, _)| !idle.contains(i));
+        for (i, effect) in acting {
+            let place = effect.place.resolve(&machine.throws);
+            let acted = place.and_then(|place| effect.effect().act(machine, &place));
+            acted.map_err(|e| e.under(effect.entry.name).under(i))?;
+        }
+        Ok(())
     }
 
     /// Changes a sensor of a machine with these throws.
@@ -77,11 +84,20 @@ impl Effects {
             effect.effect().sense(sensor, &effect.place, &names);
         }
     }
+}
 
-    fn each(&self, mut act: impl FnMut(&EffectSection) -> Result<(), Error>) -> Result<(), Error> {
-        let mut each = self.0.iter();
-        each.try_for_each(|(i, effect)| {
-            act(effect).map_err(|e| e.under(effect.entry.name).under(i))
-        })
+/// Positions of the effects of the list `sections` that cannot act in `machine`, as their joint is ideal.
+///
+/// # Errors
+/// A place that the machine does not have.
+pub(crate) fn idle(sections: &[EffectSection], machine: &Machine) -> Result<Vec<usize>, Error> {
+    let mut idle = Vec::new();
+    for (i, effect) in sections.iter().enumerate() {
+        let place = effect.place.resolve(&machine.throws);
+        let place = place.map_err(|e| e.under(effect.entry.name).under(i))?;
+        if !place.has_play(machine) {
+            idle.push(i);
+        }
     }
+    Ok(idle)
 }
