@@ -99,7 +99,9 @@ fn unexplained(explanation: &Explanation) -> Option<String> {
     }
     let before = explanation.baseline.fitted;
     let refused = explanation.refused.iter();
-    let Some(nearest) = refused.max_by(|a, b| a.probability.total_cmp(&b.probability)) else {
+    // A fit that ends above the machine without the effect did not get anywhere.
+    let nearer = refused.filter(|one| one.evidence.misfit[1] < before);
+    let Some(nearest) = nearer.max_by(|a, b| a.probability.total_cmp(&b.probability)) else {
         return Some(format!(
             "The gap is {before:.2} times the noise, and none of the effects that were tried makes the recordings likelier."
         ));
