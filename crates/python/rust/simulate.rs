@@ -253,11 +253,9 @@ impl Run {
         serde_json::to_string(&numbers).map_err(failed)
     }
 
-    /// What looks wrong: joints whose surfaces penetrate each other too deeply.
+    /// What looks wrong: joints whose surfaces penetrate each other too deeply, sensors whose range is too small.
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        let joints = self.record.penetrations.iter();
-        let deep = joints.filter(|joint| joint.is_too_deep());
-        deep.map(ToString::to_string).collect()
+        ::simulate::doubts(&self.record, &self.machine.sensors, &self.channels())
     }
 }
