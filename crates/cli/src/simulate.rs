@@ -10,6 +10,7 @@ use input::quantity::{AboveZero, Frequency, Quantity};
 use input::{MachineFile, Resolved};
 use scalar::random::{Purpose, stream};
 use serde_json::Value;
+use simulate::settings::TOLERANCES;
 use simulate::{Settings, Transient};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -190,9 +191,10 @@ fn settings(arguments: &Arguments, of_machine: Option<f64>) -> Result<Settings, 
     let asked = asked.transpose().map_err(Failure::input)?;
     let default = Settings::default();
     let tolerance = arguments.tolerance;
-    if !(1e-14..=1e-2).contains(&tolerance) {
+    let [least, most] = TOLERANCES;
+    if !(least..=most).contains(&tolerance) {
         return Err(Failure::input(format!(
-            "--tolerance: found {tolerance}, expected a number from 1e-14 to 1e-2"
+            "--tolerance: found {tolerance}, expected a number from {least:e} to {most:e}"
         )));
     }
     Ok(Settings {

@@ -51,6 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.format.print(&found, summary)?;
     match found.faults.len() {
         0 => hint(format_args!("crosshead report {dataset}")),
+        1 => return Err(Failure::work(format!("{dataset}: 1 fault"))),
         faults => return Err(Failure::work(format!("{dataset}: {faults} faults"))),
     }
     Ok(())

@@ -87,6 +87,7 @@ fn held<T>(analysis: &Result<T, Reason>) -> Result<&T, Reason> {
 fn definition(channel: &str, channel_unit: &str, line: &Line) -> Definition {
     let unit = match line.unit {
         Unit::OfChannel => channel_unit,
+        Unit::SquareOfChannel => squared(channel_unit),
         Unit::Pure => "1",
         Unit::Of(unit) => unit,
     };
@@ -99,6 +100,14 @@ fn definition(channel: &str, channel_unit: &str, line: &Line) -> Definition {
         description: line.description.clone(),
         formula: line.formula,
         source: line.source,
+    }
+}
+
+/// The square of the unit of a vibration.
+fn squared(unit: &str) -> &'static str {
+    match unit {
+        "m/s" => "m^2/s^2",
+        _ => "m^2/s^4",
     }
 }
 
@@ -129,12 +138,13 @@ mod tests {
         let channels = [
             ("crank_angle_rad", "rad"),
             ("throw1.crosshead_acceleration_m_s2", "m/s^2"),
+            ("frame_velocity_x_m_s", "m/s"),
             ("cylinder_pressure_pa", "Pa"),
             ("torque_n_m", "N m"),
             ("Kanal 3", "V"),
         ];
         let definitions = definitions(channels);
-        assert_eq!(definitions.len(), 93 + 52 + 10 + 10);
+        assert_eq!(definitions.len(), 93 + 62 + 52 + 10 + 10);
         let unit_of = |name: &str| {
             let found = definitions.iter().find(|d| d.name == name);
             found
@@ -176,6 +186,7 @@ mod tests {
                 unit
             );
         }
+        assert_eq!(unit_of("frame_velocity_x.band_0000_0020_m2_s2"), "m^2/s^2");
         assert_eq!(unit_of("cylinder_pressure.mean_pa"), "Pa");
         assert_eq!(unit_of("cylinder_pressure.order_20_rms_pa"), "Pa");
         assert_eq!(unit_of("cylinder_pressure.indicated_power_w"), "W");

@@ -140,7 +140,7 @@ fn band(index: usize) -> Line {
     };
     Line {
         name,
-        unit: Unit::Of("m^2/s^4"),
+        unit: Unit::SquareOfChannel,
         description: format!(
             "Mean square about the mean from {range}, Hann window; all bands add up to the variance"
         ),

@@ -176,6 +176,13 @@ impl Visitor<'_> for WholeNumber {
         let number = number.filter(|n| (self.low..=self.high).contains(n));
         number.ok_or_else(|| E::invalid_value(Unexpected::Unsigned(value), &self))
     }
+    // `4.0` and `1e3` are whole numbers.
+    fn visit_f64<E: Error>(self, value: f64) -> Result<u32, E> {
+        match value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
+            true => self.visit_u64(value as u64),
+            false => Err(E::invalid_value(Unexpected::Float(value), &self)),
+        }
+    }
 }
 
 impl WholeNumber {

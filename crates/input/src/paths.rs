@@ -6,6 +6,7 @@
 
 use crate::amount::Amount;
 use crate::error::{Error, Problem, shown};
+use crate::machine_file::effects::{self, Entry};
 use crate::machine_file::synonyms;
 use crate::schema::{self, Node};
 use crate::tree::find;
@@ -138,7 +139,10 @@ fn walk<'a, 'p>(
             let list = node
                 .and_then(Value::as_array)
                 .map_or(&[][..], Vec::as_slice);
-            let (index, below) = item(list, part).map_err(|error| error.under(here))?;
+            let (index, below) = item(list, part).map_err(|error| {
+                let unlisted = effects::entry(part).filter(|_| here == "effects");
+                unlisted.map_or(error, unlisted_effect).under(here)
+            })?;
             keys.push(index.to_string());
             node = list.get(index);
             schema = items;
@@ -154,6 +158,35 @@ fn walk<'a, 'p>(
         schema = inner;
     }
     Ok(Walked { keys, schema, node })
+}
+
+/// `entry` is an effect that the file does not list.
+fn unlisted_effect(entry: &Entry) -> Error {
+    let required = entry.places.iter().filter(|choice| choice.required);
+    let place = required.filter_map(|choice| {
+        let word = choice.words.first()?;
+        Some(format!("{}: {word}", choice.key))
+    });
+    let size = entry.amplitudes().next().into_iter();
+    let size = size.map(|p| format!("{}: {}", p.key, shown_plain(&p.value(p.start))));
+    let section: Vec<String> = place.chain(size).collect();
+    let expected = format!(
+        "it in the list effects of the machine file, e.g. '- {}: {{{}}}'",
+        entry.name,
+        section.join(", ")
+    );
+    Error::unexpected(
+        entry.name,
+        "an effect that the machine file does not list",
+        expected,
+    )
+}
+
+/// A value as it stands in a file.
+fn shown_plain(value: &Value) -> String {
+    value
+        .as_str()
+        .map_or_else(|| value.to_string(), str::to_owned)
 }
 
 /// `part` is no key of `schema`, which describes what stands at `keys`.

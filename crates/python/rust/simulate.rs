@@ -5,6 +5,7 @@ use crate::failure::{failed, raised, wrong};
 use crate::interruptible::{Shared, interruptible};
 use crate::machine::Machine;
 use crate::table::Table;
+use ::simulate::settings::TOLERANCES;
 use ::simulate::{Record, Settings, Transient};
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float32Type;
@@ -68,8 +69,9 @@ pub fn simulate(
     if revolutions == 0 {
         return Err(wrong("revolutions: found 0, expected 1 or more"));
     }
-    if !(1e-14..=1e-2).contains(&tolerance) {
-        let expected = "expected a number from 1e-14 to 1e-2";
+    let [least, most] = TOLERANCES;
+    if !(least..=most).contains(&tolerance) {
+        let expected = format!("expected a number from {least:e} to {most:e}");
         return Err(wrong(format!("tolerance: found {tolerance}, {expected}")));
     }
     let recordable = settings.check(machine.speed);
@@ -253,11 +255,9 @@ impl Run {
         serde_json::to_string(&numbers).map_err(failed)
     }
 
-    /// What looks wrong: joints whose surfaces penetrate each other too deeply.
+    /// What looks wrong: joints whose surfaces penetrate each other too deeply, sensors whose range is too small.
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        let joints = self.record.penetrations.iter();
-        let deep = joints.filter(|joint| joint.is_too_deep());
-        deep.map(ToString::to_string).collect()
+        ::simulate::doubts(&self.record, &self.machine.sensors, &self.channels())
     }
 }

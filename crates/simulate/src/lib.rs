@@ -61,7 +61,7 @@ pub use error::Error;
 pub use flow::{Cycle, Flow};
 pub use indicator_card::IndicatorCard;
 pub use lyapunov::{Exponent, ExponentSettings, exponents};
-pub use measure::measure;
+pub use measure::{CutOff, cut_off, doubts, measure};
 pub use penetration::Penetration;
 pub use periodic_orbit::PeriodicOrbit;
 pub use poincare::{SectionSettings, Sections, sections};

@@ -6,6 +6,7 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use signal::channel::Channel;
 use std::f64::consts::TAU;
+use std::fmt;
 
 /// One measurement of `record`: the channels as recorded. `throws` are the names that prefix the
 /// channels of a machine of several throws. Two measurements with unlike random numbers differ in
@@ -31,6 +32,65 @@ pub fn measure(
                 samples: series.iter().map(|x| digitise.read(*x) as f32).collect(),
             }
         })
+        .collect()
+}
+
+/// A channel whose recorder had too small a range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutOff {
+    /// Name of the channel.
+    pub channel: String,
+    /// Share of its samples that are at an end of the range.
+    pub share: f64,
+    /// Largest magnitude that the recorder holds, in the channel's unit.
+    pub range: f64,
+    /// The channel's unit.
+    pub unit: String,
+}
+
+impl fmt::Display for CutOff {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(
+            f,
+            "{}: {:.2} % of the samples are cut off at the sensor's range of {} {}: state a wider range",
+            self.channel,
+            100.0 * self.share,
+            self.range,
+            self.unit
+        )
+    }
+}
+
+/// The channels, as recorded by these sensors, that their ranges cut off.
+pub fn cut_off(sensors: &[Sensor], channels: &[Channel]) -> Vec<CutOff> {
+    let each = sensors.iter().zip(channels);
+    let found = each.filter_map(|(sensor, channel)| {
+        // The range of an automatic recorder is that of its record.
+        let Some(Range::Fixed(range)) = sensor.chain.range else {
+            return None;
+        };
+        let digitise = Digitiser::new(sensor, &[]);
+        let [low, high] = digitise.limits.map(|limit| digitise.read(limit) as f32);
+        let samples = channel.samples.iter();
+        let count = samples.filter(|x| **x <= low || **x >= high).count();
+        (count > 0 && low < high).then(|| CutOff {
+            channel: channel.name.clone(),
+            share: count as f64 / channel.samples.len() as f64,
+            range,
+            unit: channel.unit.clone(),
+        })
+    });
+    found.collect()
+}
+
+/// What is doubtful about a run that was recorded by these sensors: joints that are pressed in too deeply, ranges that
+/// are too small.
+pub fn doubts(record: &Record, sensors: &[Sensor], channels: &[Channel]) -> Vec<String> {
+    let joints = record.penetrations.iter();
+    let deep = joints.filter(|joint| joint.is_too_deep());
+    let cut_off = cut_off(sensors, channels).into_iter();
+    deep.map(ToString::to_string)
+        .chain(cut_off.map(|channel| channel.to_string()))
         .collect()
 }
 

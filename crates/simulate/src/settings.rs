@@ -41,6 +41,9 @@ pub const LEAST_PER_REVOLUTION: f64 = 2.5;
 /// case that is simulated at the same time.
 pub const MOST_SAMPLES: f64 = 67_108_864.0;
 
+/// Smallest and largest tolerance of an integration.
+pub const TOLERANCES: [f64; 2] = [1e-14, 1e-2];
+
 /// A sample rate that gives no record of a machine.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("sample rate: found {rate} Hz, expected {expected}")]

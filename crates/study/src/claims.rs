@@ -149,9 +149,12 @@ fn compared(claim: &'static str, measure: &Measure, pairs: &[Pair]) -> Claim {
     };
     let exception = |(low, high): &&Pair| {
         let [a, b] = [low, high].map(|level| (measure.of)(level));
-        let but = if a.exceeds(b) { "but" } else { "and equally" };
+        let is_lower = a.exceeds(b);
         let [a, b] = [a, b].map(|level| text::decimal(level.value, 1));
-        format!("{} {a} {but} {} {b}", named(low), named(high))
+        match is_lower {
+            true => format!("{} {a} but {} {b}", named(low), named(high)),
+            false => format!("{} {b} does not exceed {} {a}", named(high), named(low)),
+        }
     };
     let exceptions: Vec<String> = others.iter().take(MOST_EXCEPTIONS).map(exception).collect();
     let figures = format!("{} of {}", for_it.len(), pairs.len());
@@ -349,7 +352,11 @@ mod tests {
         }
         let said = &claims(&grid)[0];
         assert_eq!(said.verdict, Verdict::DoesNotHold);
-        assert!(said.evidence.contains("and equally"), "{}", said.evidence);
+        assert!(
+            said.evidence.contains("does not exceed"),
+            "{}",
+            said.evidence
+        );
     }
 
     #[test]

@@ -13,12 +13,12 @@ use input::bundle::Bundle;
 use input::choice::Or;
 use input::file_kind::FileKind;
 use input::yaml::Document;
-use input::{Error, paths};
+use input::{Error, Problem, paths};
 use scalar::elementary::exp;
 use serde_json::{Map, Value, json};
 
 use crate::Plan;
-use crate::dataset::{self, CALIBRATION, Claim, check_calibration};
+use crate::dataset::{self, CALIBRATION, Claim, Tables, check_calibration};
 use crate::sweep_file::{self, Amount, Calibrate, SweepFile, Uncertainty, Undetermined};
 
 /// sweep.yaml.
@@ -214,10 +214,17 @@ impl Sweep {
     /// # Errors
     /// As [`Plan::read`].
     pub fn nominal(&self) -> Result<Plan, Error> {
-        match self.calibrate() {
+        let plan = match self.calibrate() {
             None => Plan::new(&self.document, &self.folder),
             Some(_) => self.plan(self.nominal_machine()?, Map::new(), None),
-        }
+        }?;
+        // What its tables cannot have is found before anything is simulated.
+        let tables = Tables::new(&plan);
+        tables.map_err(|error| {
+            let error = Error::new("cases", Problem::Other(error.to_string()));
+            self.document.locate(error)
+        })?;
+        Ok(plan)
     }
 
     /// The calibration that it asks for, into its folder in that of the dataset, `root`. An existing one is used if

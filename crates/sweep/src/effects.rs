@@ -48,6 +48,19 @@ struct Id {
     part: Vec<String>,
 }
 
+impl Id {
+    /// The path of its parameter `key`, with the effect's place.
+    fn path(&self, key: &str) -> String {
+        let place = self.place.iter().map(String::as_str);
+        let parts: Vec<&str> = ["effects", self.name]
+            .into_iter()
+            .chain(place)
+            .chain([key])
+            .collect();
+        parts.join(".")
+    }
+}
+
 /// The amplitudes of every effect of a machine file, SI, in the order of the catalogue.
 type Amplitudes = BTreeMap<Id, Vec<f64>>;
 
@@ -75,6 +88,14 @@ impl VariedEffect {
     /// effect vanishes where the file does not have it.
     pub(crate) fn value(&self, amplitude: &Amplitude, tree: &Value) -> f64 {
         size(&amplitudes(tree), &self.id)[amplitude.position]
+    }
+
+    /// One of its amplitudes with the place of the effect in its path.
+    pub(crate) fn at_its_place(&self, amplitude: &Amplitude) -> Amplitude {
+        Amplitude {
+            path: self.id.path(amplitude.parameter.key),
+            ..amplitude.clone()
+        }
     }
 
     /// Where the machine file `tree` has it in its list, if it does.
@@ -154,13 +175,12 @@ pub(crate) fn varied(chosen: &[Value], drawn: &[Value], own: &Value) -> Vec<Vari
 
 /// The amplitudes of an effect; among several of one name the paths have its place in them.
 fn of_catalogue(entry: &'static Entry, id: &Id, is_one_of_several: bool) -> Vec<Amplitude> {
-    let mut prefix = vec!["effects", entry.name];
-    if is_one_of_several {
-        prefix.extend(id.place.iter().map(String::as_str));
-    }
     let amplitudes = entry.amplitudes().enumerate();
     let amplitudes = amplitudes.map(|(position, parameter)| Amplitude {
-        path: format!("{}.{}", prefix.join("."), parameter.key),
+        path: match is_one_of_several {
+            true => id.path(parameter.key),
+            false => format!("effects.{}.{}", entry.name, parameter.key),
+        },
         parameter,
         position,
     });
@@ -241,6 +261,11 @@ fn item(item: &Value) -> Option<(Id, Vec<f64>)> {
     let word = |key| section.get(key).and_then(Value::as_str).map(str::to_owned);
     let words = entry.places.iter().filter_map(|choice| word(choice.key));
     let parts = entry.places.iter().filter(|choice| choice.key != "throw");
+    // The crank end of a cylinder is not the crank.
+    let part = |key| match key {
+        "end" => word(key).map(|end| format!("{end}_end")),
+        key => word(key),
+    };
     let orders = entry.parameters.iter().filter(|parameter| parameter.whole);
     let orders = orders.filter_map(|parameter| section.get(parameter.key).map(Value::to_string));
     let value = |parameter: &Parameter| {
@@ -251,7 +276,7 @@ fn item(item: &Value) -> Option<(Id, Vec<f64>)> {
         name: entry.name,
         place: words.chain(orders).collect(),
         throw: word("throw"),
-        part: parts.filter_map(|choice| word(choice.key)).collect(),
+        part: parts.filter_map(|choice| part(choice.key)).collect(),
     };
     Some((id, entry.amplitudes().map(value).collect()))
 }

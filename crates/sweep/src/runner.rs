@@ -2,7 +2,7 @@
 
 use crate::Case;
 use crate::dataset::{Failure, Recording};
-use simulate::{Asked, Record, machine_motion, measure, simulate_together};
+use simulate::{Asked, Record, doubts, machine_motion, measure, simulate_together};
 
 /// Simulates cases side by side and measures each with its sensors and its noise.
 ///
@@ -24,18 +24,12 @@ fn recording(case: &Case, record: &Record) -> Result<Recording, Failure> {
         Some(asked) => machine_motion(&resolved.machine, &asked.settings, asked.extent)?,
         None => None,
     };
+    let throws = resolved.machine.throw_names();
+    let channels = measure(record, &resolved.sensors, &throws, &mut case.noise());
     Ok(Recording {
         motion,
-        warnings: (record.penetrations.iter())
-            .filter(|joint| joint.is_too_deep())
-            .map(ToString::to_string)
-            .collect(),
+        warnings: doubts(record, &resolved.sensors, &channels),
         sample_rate_hz: record.sample_rate,
-        channels: measure(
-            record,
-            &resolved.sensors,
-            &resolved.machine.throw_names(),
-            &mut case.noise(),
-        ),
+        channels,
     })
 }

@@ -29,6 +29,8 @@ pub(crate) struct Line {
 pub(crate) enum Unit {
     /// That of the channel.
     OfChannel,
+    /// The square of it.
+    SquareOfChannel,
     /// None: a pure number.
     Pure,
     /// This one.

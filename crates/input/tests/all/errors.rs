@@ -349,7 +349,7 @@ fn paths_that_lead_nowhere() {
             "joints.big_end.clearence: unknown key; expected one of clearance, normal_clearance, journal_radius, model, contact, friction; did you mean 'clearance'?",
             "joints.big_end.clearance.x: unknown key; expected nothing here",
             "throws.throw1: found 'throw1', expected nothing here",
-            "effects.ring_friction: found 'ring_friction', expected valve_loss",
+            "effects.ring_friction: found an effect that the machine file does not list, expected it in the list effects of the machine file, e.g. '- ring_friction: {coulomb_force: 100 N}'",
             "effects.valve_los: found 'valve_los', expected valve_loss; did you mean 'valve_loss'?",
             "sensors.7: found '7', expected crosshead_acceleration",
             "sensors.0.rang: unknown key; expected one of measure, throw, range, bits, noise, delay, low_pass, high_pass, mounting, gain, axis, end; did you mean 'range'?",

@@ -21,7 +21,8 @@ pub fn run(run: &Run) -> String {
     ];
     let speed = run.free_speed();
     let speed = speed.map(|speed| format!("  mean speed {}\n", rpm(speed)));
-    let warnings = too_deep(record).map(|joint| format!("  warning: {joint}\n"));
+    let doubts = simulate::doubts(record, &machine.sensors, &run.channels);
+    let warnings = doubts.iter().map(|doubt| format!("  warning: {doubt}\n"));
     let lines = head.into_iter().chain(run.channels.iter().map(channel));
     lines.chain(speed).chain(warnings).collect()
 }

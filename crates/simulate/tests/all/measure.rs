@@ -1,8 +1,9 @@
 //! Range, resolution and noise of the recorder, on series with known values.
 
 use scalar::random::{Purpose, stream};
+use signal::channel::Channel;
 use simulate::sensor::{Chain, Noise, NoiseLevel, Range, Sensor};
-use simulate::{Measured, Record, measure};
+use simulate::{Measured, Record, cut_off, measure};
 use std::f64::consts::TAU;
 
 const ACCELERATION: Measured = Measured::CrossheadAcceleration { throw: 0 };
@@ -40,6 +41,38 @@ fn range_and_bits_limit_and_round() {
         read(ACCELERATION, chain, vec![1e3, -1e3, 0.3, 0.4]),
         [100.0 - step, -100.0, 0.0, step]
     );
+}
+
+#[test]
+fn a_range_that_cuts_off_is_told_with_its_share() {
+    let sensor = |range, bits| Sensor {
+        measured: ACCELERATION,
+        chain: Chain {
+            range,
+            bits,
+            ..Chain::default()
+        },
+    };
+    let cut = |range, bits| {
+        let chain = sensor(range, bits).chain;
+        let channel = Channel {
+            name: "a_m_s2".into(),
+            unit: "m/s^2".into(),
+            samples: read(ACCELERATION, chain, vec![150.0, -120.0, 90.0, 0.0, 30.0]),
+        };
+        cut_off(&[sensor(range, bits)], &[channel])
+    };
+    for bits in [None, Some(8), Some(16), Some(24)] {
+        let found = cut(Some(Range::Fixed(100.0)), bits);
+        assert_eq!(found.len(), 1, "{bits:?}");
+        assert_eq!(found[0].share, 0.4, "{bits:?}");
+        assert!(cut(Some(Range::Fixed(200.0)), bits).is_empty());
+        assert!(cut(Some(Range::Auto), bits).is_empty());
+    }
+    assert!(cut(None, None).is_empty());
+    let message = cut(Some(Range::Fixed(100.0)), Some(16))[0].to_string();
+    let expected = "a_m_s2: 40.00 % of the samples are cut off at the sensor's range of 100 m/s^2: state a wider range";
+    assert_eq!(message, expected);
 }
 
 #[test]

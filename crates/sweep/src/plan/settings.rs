@@ -2,6 +2,7 @@
 
 use input::Error;
 use input::choice::Or;
+use simulate::settings::TOLERANCES;
 use simulate::{ExponentSettings, Extent, Settings, Transient};
 
 use super::Judgement;
@@ -11,13 +12,10 @@ use crate::sweep_file::{Run, SweepFile};
 pub(super) fn settings(run: &Run, sample_rate: Option<f64>) -> Result<Settings, Error> {
     let default = Settings::default();
     let tolerance = run.tolerance.map_or(default.tolerance, |t| t.get());
-    if !(1e-13..=1e-3).contains(&tolerance) {
-        let found = format_args!("{tolerance:e}");
-        return Err(Error::unexpected(
-            "run.tolerance",
-            found,
-            "1e-13 to 1e-3, e.g. 1e-9",
-        ));
+    let [least, most] = TOLERANCES;
+    if !(least..=most).contains(&tolerance) {
+        let expected = format_args!("a number from {least:e} to {most:e}, e.g. 1e-9");
+        return Err(Error::clash("run.tolerance", expected));
     }
     Ok(Settings {
         revolutions: run.revolutions.get(),

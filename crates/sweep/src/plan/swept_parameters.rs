@@ -41,7 +41,15 @@ impl Plan {
             let leads_there = |path: &&str| place.is_some() && keys(self, path) == place;
             !paths.iter().any(leads_there)
         });
-        let others = others.map(|(effect, amplitude)| Parameter::of_amplitude(effect, amplitude));
+        // A path that the sweep sets is a column already, and may lead to the same effect at another place.
+        let others = others.filter_map(|(effect, amplitude)| {
+            let is_taken = |amplitude: &Amplitude| paths.contains(&amplitude.path.as_str());
+            let named = match is_taken(amplitude) {
+                true => effect.at_its_place(amplitude),
+                false => amplitude.clone(),
+            };
+            (!is_taken(&named)).then(|| Parameter::of_amplitude(effect, &named))
+        });
         own.chain(others).collect()
     }
 }

@@ -138,7 +138,7 @@ pub struct Run {
     /// With `samples_per_revolution`: the crank angle at which the signals begin; default `zero`.
     #[serde(default)]
     pub start: Option<Start>,
-    /// Relative local error of the integration, 1e-13 to 1e-3; default 1e-9.
+    /// Relative local error of the integration, 1e-14 to 1e-2; default 1e-9.
     #[serde(default)]
     pub tolerance: Option<Number<AboveZero>>,
     /// The motion of each case judged from the equations: the largest Lyapunov exponent, its

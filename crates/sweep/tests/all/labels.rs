@@ -288,7 +288,9 @@ cases: [{grid: {effects.bearing_ovality.amplitude: 10 um}}]
     let machines = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines");
     let document = Document::parse(oval, "sweep.yaml").unwrap();
     let message = Plan::new(&document, &machines).unwrap_err().to_string();
-    assert!(message.contains("bearing_ovality"), "{message}");
+    let expected = "effects.bearing_ovality.amplitude: found an effect that the machine file does not list, expected it in \
+                    the list effects of the machine file, e.g. '- bearing_ovality: {joint: main, amplitude: 3e-5 m}'";
+    assert!(message.contains(expected), "{message}");
 }
 
 #[test]
@@ -418,6 +420,40 @@ fn effects_of_one_throw_have_its_name() {
             "heat_transfer+throw2.ring_leakage"
         ]
     );
+}
+
+#[test]
+fn an_effect_that_the_sweep_puts_on_one_throw_has_a_column_of_its_own() {
+    let rest = "cases: [{grid: {effects.ring_leakage.throw: [throw2], effects.ring_leakage.area: [0 mm^2, 2 mm^2]}}]";
+    let plan = plan_of("two-stage.yaml", &[], rest);
+    assert_eq!(faults(&plan), ["none", "throw2.ring_leakage"]);
+    let columns = [
+        "effects.ring_leakage.throw",
+        "effects.ring_leakage.area_m2",
+        "effects.ring_leakage.throw2.area_m2",
+    ];
+    assert_eq!(sizes(&plan), columns);
+}
+
+#[test]
+fn the_crank_end_of_a_cylinder_is_not_the_crank() {
+    let leak = [(
+        "effects: []",
+        "effects: [{ring_leakage: {throw: throw1, end: crank, area: 0 mm^2}}]",
+    )];
+    let rest = "cases: [{grid: {effects.ring_leakage.area: [0 mm^2, 3 mm^2]}}]";
+    let plan = plan_of("two-stage.yaml", &leak, rest);
+    let places: Vec<String> = (cases(&plan)[1].labels.faults.iter())
+        .map(|fault| fault.location.clone())
+        .collect();
+    assert_eq!(places, ["throw1.crank_end"]);
+}
+
+#[test]
+fn whole_numbers_may_have_a_point() {
+    let rest = "repeats: 2.0\nseed: 1e3\ncases: [{grid: {speed: 400 rpm}}]";
+    let plan = plan_of("single-stage.yaml", &[], rest);
+    assert_eq!((plan.cases(), plan.seed), (2, 1000));
 }
 
 #[test]
