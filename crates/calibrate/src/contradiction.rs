@@ -10,7 +10,7 @@ use crate::shut_valve::ShutValve;
 use rayon::prelude::*;
 use signal::Complex64;
 use signal::order_lines::OrderLines;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The first order of an acceleration is that of the crank's throw; the contacts hardly change it. A factor
 /// beyond this means another stroke, speed or unit.
@@ -179,12 +179,13 @@ fn acceleration(observed: &OrderLines, predicted: &OrderLines) -> Result<(), Str
     }
 }
 
-/// A pressure that falls while its end of the cylinder gets smaller is that of the other end. A valve that stays open leaves little
-/// of the first order, whose phase then says nothing.
+/// A pressure that falls while its end of the cylinder gets smaller is that of the other end: its first order is opposite. A valve
+/// that stays open leaves little of the first order, and what throttles the gas a quarter of a turn away.
 fn pressure(observed: &OrderLines, predicted: &OrderLines) -> Result<(), String> {
     let [recorded, machine] = [observed, predicted].map(|lines| lines.amplitude[1]);
     let apart = (recorded / machine).arg();
-    if apart.abs() <= FRAC_PI_2 || recorded.norm() < machine.norm() / FACTOR {
+    let is_opposite = (PI - apart.abs()).to_degrees() < PHASE;
+    if !is_opposite || recorded.norm() < machine.norm() / FACTOR {
         return Ok(());
     }
     Err(format!(
