@@ -65,8 +65,9 @@ impl fmt::Display for CutOff {
 pub fn cut_off(sensors: &[Sensor], channels: &[Channel]) -> Vec<CutOff> {
     let each = sensors.iter().zip(channels);
     let found = each.filter_map(|(sensor, channel)| {
-        // The range of an automatic recorder is that of its record.
-        let Some(Range::Fixed(range)) = sensor.chain.range else {
+        // An encoder turns round, and the range of an automatic recorder is that of its record.
+        let (false, Some(Range::Fixed(range))) = (sensor.measured.is_angle(), sensor.chain.range)
+        else {
             return None;
         };
         let digitise = Digitiser::new(sensor, &[]);

@@ -70,6 +70,22 @@ fn a_range_that_cuts_off_is_told_with_its_share() {
         assert!(cut(Some(Range::Auto), bits).is_empty());
     }
     assert!(cut(None, None).is_empty());
+    // An encoder turns round.
+    let chain = Chain {
+        range: Some(Range::Fixed(TAU)),
+        bits: Some(16),
+        ..Chain::default()
+    };
+    let angles = Channel {
+        name: "crank_angle_rad".into(),
+        unit: "rad".into(),
+        samples: vec![0.0, 3.0, 6.28],
+    };
+    let encoder = Sensor {
+        measured: Measured::CrankAngle,
+        chain,
+    };
+    assert!(cut_off(&[encoder], &[angles]).is_empty());
     let message = cut(Some(Range::Fixed(100.0)), Some(16))[0].to_string();
     let expected = "a_m_s2: 40.00 % of the samples are cut off at the sensor's range of 100 m/s^2: state a wider range";
     assert_eq!(message, expected);
