@@ -79,7 +79,7 @@ fn a_range_that_cuts_off_is_told_with_its_share() {
     let angles = Channel {
         name: "crank_angle_rad".into(),
         unit: "rad".into(),
-        samples: vec![0.0, 3.0, 6.28],
+        samples: vec![0.0, 3.0, TAU as f32],
     };
     let encoder = Sensor {
         measured: Measured::CrankAngle,
